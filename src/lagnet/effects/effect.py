@@ -1,0 +1,114 @@
+"""The abstract kinds of left-out physics, and what every effect must say about itself.
+
+An effect adds a torque r to the torque of the nominal model. Two views of the same physics are asked of each final class:
+
+- `torque(motion, joint, values)`: the exact law, used by corrected models, plots and the last refit;
+- `columns(motion, joint, shape)` for each of `shapes(motion, joint)`: the law made linear, used by the search over
+  hypotheses. `values(coefficients, shape)` turns fitted coefficients back into physical parameters.
+
+A variant is a new final class in a new file, never a flag.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from lagnet.effects.motion import Motion
+
+Values = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One physical parameter: its name, symbol, unit for revolute joints, bounds and what it means."""
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    lower: float = -np.inf
+    upper: float = np.inf
+
+    def unit_for(self, prismatic: bool) -> str:
+        """The unit, with torques and angles turned into forces and lengths for a prismatic joint."""
+        if not prismatic:
+            return self.unit
+        return self.unit.replace("N m", "N").replace("rad", "m")
+
+
+class Effect(ABC):
+    """One physical cause that a simulation may have left out."""
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    formula: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    whole_arm: ClassVar[bool] = False  # True: one instance for the arm, joint is None in a verdict
+    shown_by: ClassVar[str]  # what motion shows it, as advice: "moves in both directions ..."
+    confused_with: ClassVar[tuple[str, ...]] = ()  # names in the catalogue
+    source: ClassVar[str]  # key in docs/references
+    needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
+    stage: ClassVar[str] = "torque"  # "torque": part of the arm; "signal": acts on the recorded torque after all others
+
+    @abstractmethod
+    def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
+        """The added torque by the exact law, shape (n,) for the joint, or (n, dof) where it reaches other joints."""
+
+    @abstractmethod
+    def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
+        """Linearised law: shape (n, k) for the joint's own torque, or (n, dof, k) where it reaches other joints."""
+
+    @abstractmethod
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        """Physical parameters of fitted coefficients (k,) and the shape that made the columns."""
+
+    def shapes(self, motion: Motion, joint: int | None) -> Sequence[Values]:
+        """The values of parameters in which the law is not linear, to be tried one by one; one empty by default."""
+        return ({},)
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of the coefficients of `columns`."""
+        lower = np.array([p.lower for p in self.parameters])
+        return lower, np.array([p.upper for p in self.parameters])
+
+    def feasible(self, values: Mapping[str, float]) -> bool:
+        """Whether the parameters obey physics (bounds; pseudo-inertias positive definite where there are any)."""
+        return all(p.lower <= values[p.name] <= p.upper for p in self.parameters)
+
+    def excitation(self, motion: Motion, joint: int | None) -> str | None:
+        """None if the motion can show the effect, else the reason why it cannot, for an abstention."""
+        return None
+
+
+class LinearEffect(Effect):
+    """An effect that is linear in its physical parameters: the columns are the law itself."""
+
+    @abstractmethod
+    def regressor(self, motion: Motion, joint: int | None) -> np.ndarray:
+        """Torque for each parameter at 1, shape (n, n_parameters) or (n, dof, n_parameters)."""
+
+    def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
+        return self.regressor(motion, joint)
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        return {p.name: float(c) for p, c in zip(self.parameters, coefficients, strict=True)}
+
+    def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
+        return self.regressor(motion, joint) @ np.array([values[p.name] for p in self.parameters])
+
+
+class StateEffect(Effect):
+    """An effect with memory: a hidden state driven by the motion."""
+
+    @abstractmethod
+    def init_state(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        """State at the first sample."""
+
+    @abstractmethod
+    def derivative(self, state: np.ndarray, q: float, v: float, load: float, values: Mapping[str, float]) -> np.ndarray:
+        """Rate of the state at one instant."""

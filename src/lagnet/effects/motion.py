@@ -1,0 +1,52 @@
+"""What an effect sees of a recording: motion on an even clock, and the torque that the nominal model gives for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from lagnet.types import InverseDynamics, JointVector, Samples, Trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One uninterrupted stretch of motion.
+
+    Args:
+        time: shape (n,), [s].
+        q, v, a: shape (n, dof), smoothed joint motion [rad, rad/s, rad/s²].
+        load: shape (n, dof), torque that the model with all effects so far gives [N m].
+        slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v) = tanh(v/ε).
+        model: the nominal model, for effects that change bodies or gravity.
+        cache: shared store of regressors that several effects need.
+    """
+
+    time: Samples
+    q: Trajectory
+    v: Trajectory
+    a: Trajectory
+    load: Trajectory
+    slow: JointVector
+    model: InverseDynamics | Any
+    cache: dict = field(default_factory=dict, repr=False)
+
+    @property
+    def n_dof(self) -> int:
+        """Number of joints."""
+        return self.q.shape[1]
+
+    def direction(self, joint: int) -> np.ndarray:
+        """s(v) = tanh(v / ε) of one joint, shape (n,): the sign of the velocity, smooth through zero."""
+        return np.tanh(self.v[:, joint] / self.slow[joint])
+
+    def with_load(self, load: Trajectory) -> Motion:
+        """The same motion under another model torque."""
+        return replace(self, load=load)
+
+    def remembered(self, key: str, make: Any) -> Any:
+        """The value of `make()`, kept for the other effects that ask for the same key."""
+        if key not in self.cache:
+            self.cache[key] = make()
+        return self.cache[key]
