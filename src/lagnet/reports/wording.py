@@ -1,0 +1,74 @@
+"""How numbers and names of the catalogue are put into words and digits."""
+
+from __future__ import annotations
+
+import math
+
+
+def effect_words(name: str) -> str:
+    """A name of the catalogue in words: viscous_friction becomes viscous friction."""
+    return name.replace("_", " ")
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A value in so many significant digits, e.g. 14.2, 0.00345, 1.20·10⁻⁶; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 <= exponent < 6:
+        return _signed(f"{value:.{max(digits - 1 - exponent, 0)}f}")
+    return _signed(f"{value / 10.0**exponent:.{digits - 1}f}·10{_superscript(exponent)}")
+
+
+def percent(share: float | None) -> str:
+    """A share as percent in two digits: 96 %, 0.69 %, below 0.01 %."""
+    if share is None or not math.isfinite(share):
+        return "–"
+    if 0 < share < 1e-4:
+        return "< 0.01 %"
+    return f"{number(100 * share, 2) if share < 0.995 else f'{100 * share:.0f}'} %"
+
+
+def with_interval(value: float, low: float, high: float) -> str:
+    """A value and its 95 % interval, to two digits of the interval: 14.20 ± 0.31, or 3.1 (2.0 … 5.5) if lopsided."""
+    half = (high - low) / 2
+    if not math.isfinite(half) or half <= 0:
+        return number(value)
+    digits = _digits(value, half)
+    if abs((high + low) / 2 - value) > 0.2 * half:
+        return f"{number(value, digits)} ({number(low, digits)} … {number(high, digits)})"
+    places = max(1 - math.floor(math.log10(half)), 0)
+    if places > 6:
+        return f"{number(value, digits)} ± {number(half, 2)}"
+    return f"{_signed(f'{value:.{places}f}')} ± {half:.{places}f}"
+
+
+def listed(words: list[str] | tuple[str, ...]) -> str:
+    """Words as a list in a sentence: a, b and c."""
+    words = list(words)
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _digits(value: float, half: float) -> int:
+    size = max(abs(value), half)
+    return min(max(2 + math.floor(math.log10(size)) - math.floor(math.log10(half)), 2), 6)
+
+
+def _signed(text: str) -> str:
+    return text.replace("-", "−")
+
+
+def _superscript(exponent: int) -> str:
+    return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+FILTERS = {
+    "effect_words": effect_words,
+    "number": number,
+    "percent": percent,
+    "listed": listed,
+}
