@@ -36,12 +36,8 @@ def test_hostile_names_stay_words(tmp_path):
 
 
 def test_data_survive_the_script_tag():
-    content = {
-        "name": HOSTILE + "\u2028&",
-        "value": math.nan,
-        "row": (1.0, -math.inf),
-        "array": np.array([1.0, np.nan]),
-    }
+    name = HOSTILE + "\u2028&"
+    content = {"name": name, "value": math.nan, "row": (1.0, -math.inf), "array": np.array([1.0, np.nan])}
     text = str(json_for_script(content))
     assert not set("<>&\u2028") & set(text)
     assert json.loads(text) == {"name": name, "value": None, "row": [1.0, None], "array": [1.0, None]}
