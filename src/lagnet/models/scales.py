@@ -1,0 +1,36 @@
+"""Sizes of motion and torque that a model carries with it, so that callers only ever see SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Typical size of each joint's velocity [rad/s], acceleration [rad/s²] and torque [N m] in the training data.
+
+    Args:
+        velocity, acceleration, torque: root mean square (velocity, acceleration) and standard deviation (torque), per joint.
+    """
+
+    velocity: tuple[float, ...]
+    acceleration: tuple[float, ...]
+    torque: tuple[float, ...]
+
+    @property
+    def inertia(self) -> tuple[float, ...]:
+        """Torque over acceleration [kg m²], the inertia each joint seems to have."""
+        return tuple(t / a for t, a in zip(self.torque, self.acceleration, strict=True))
+
+
+def fit_scales(v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> Scales:
+    """Measure the sizes on training data of shape (n, dof); joints that never move or push count as size 1."""
+    return Scales(
+        _sizes(np.sqrt(np.mean(v**2, axis=0))), _sizes(np.sqrt(np.mean(a**2, axis=0))), _sizes(tau.std(axis=0))
+    )
+
+
+def _sizes(values: np.ndarray) -> tuple[float, ...]:
+    return tuple(float(x) if x > 1e-9 else 1.0 for x in values)
