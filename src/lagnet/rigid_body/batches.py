@@ -1,0 +1,89 @@
+"""Pinocchio over many samples: one tight loop a quantity, its own workspace a call, so that threads may share a model.
+
+All take and give arrays of float64, batch first: q, v, a, tau of shape (n, dof).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+
+TIP_WRENCH = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+
+
+def inverse_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Recursive Newton–Euler, shape (n, dof)."""
+    data, rnea, out = model.createData(), pin.rnea, np.empty(q.shape)
+    for i in range(len(q)):
+        out[i] = rnea(model, data, q[i], v[i], a[i])
+    return out
+
+
+def gravity_torque(model: pin.Model, q: np.ndarray) -> np.ndarray:
+    """Torque that holds the arm still, shape (n, dof)."""
+    data, gravity, out = model.createData(), pin.computeGeneralizedGravity, np.empty(q.shape)
+    for i in range(len(q)):
+        out[i] = gravity(model, data, q[i])
+    return out
+
+
+def coriolis_torque(weightless: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Newton–Euler without gravity and acceleration, shape (n, dof); the model must have its gravity set to zero."""
+    data, bias, out = weightless.createData(), pin.nonLinearEffects, np.empty(q.shape)
+    for i in range(len(q)):
+        out[i] = bias(weightless, data, q[i], v[i])
+    return out
+
+
+def forward_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Articulated-body algorithm, shape (n, dof)."""
+    data, aba, out = model.createData(), pin.aba, np.empty(q.shape)
+    for i in range(len(q)):
+        out[i] = aba(model, data, q[i], v[i], tau[i])
+    return out
+
+
+def mass_matrix(model: pin.Model, q: np.ndarray) -> np.ndarray:
+    """Composite-rigid-body algorithm, shape (n, dof, dof)."""
+    data, crba = model.createData(), pin.crba
+    out = np.empty((len(q), model.nv, model.nv))
+    for i in range(len(q)):
+        out[i] = crba(model, data, q[i])
+    lower = np.tril_indices(model.nv, -1)
+    out[:, lower[0], lower[1]] = out[:, lower[1], lower[0]]  # the algorithm fills the upper triangle
+    return out
+
+
+def coriolis_matrix(model: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """C(q, v) with Ṁ = C + Cᵀ, shape (n, dof, dof)."""
+    data, coriolis = model.createData(), pin.computeCoriolisMatrix
+    out = np.empty((len(q), model.nv, model.nv))
+    for i in range(len(q)):
+        out[i] = coriolis(model, data, q[i], v[i])
+    return out
+
+
+def regressor(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray, columns: slice) -> np.ndarray:
+    """Columns of the joint torque regressor, shape (n, dof, number of columns)."""
+    data, compute, shape = model.createData(), pin.computeJointTorqueRegressor, (model.nv, 10 * model.nv)
+    out = np.empty((len(q), model.nv, len(range(*columns.indices(10 * model.nv)))))
+    for i in range(len(q)):
+        out[i] = compute(model, data, q[i], v[i], a[i]).reshape(shape)[:, columns]  # one joint comes back flat
+    return out
+
+
+def tip_jacobian(model: pin.Model, q: np.ndarray, frame: int) -> np.ndarray:
+    """Velocity of a frame per joint velocity, axes of the base, shape (n, 6, dof)."""
+    data, jacobian = model.createData(), pin.computeFrameJacobian
+    out = np.empty((len(q), 6, model.nv))
+    for i in range(len(q)):
+        out[i] = jacobian(model, data, q[i], frame, TIP_WRENCH).reshape(6, model.nv)
+    return out
+
+
+def energy(compute: Callable, model: pin.Model, *motion: np.ndarray) -> np.ndarray:
+    """An energy by the given Pinocchio call, shape (n,)."""
+    data = model.createData()
+    return np.array([compute(model, data, *row) for row in zip(*motion, strict=True)], dtype=float)

@@ -1,0 +1,49 @@
+"""What is read from a file before any physics is asked of it: the model, its joints, limits and where it came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from lagnet.rigid_body.xml_files import XmlFile
+
+EARTH = (0.0, 0.0, -9.81)  # [m/s²], standing base, z up
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A fixed-base arm of one-degree-of-freedom joints.
+
+    Args:
+        model: kinematics and inertias; every joint has one position variable, continuous joints an angle.
+        joint_types: 'revolute', 'continuous' or 'prismatic' of each joint.
+        links: name of the moving body behind each joint.
+        link_inertials: link name and ten inertial parameters in the link's own frame, as the file gives them, before
+            links behind fixed joints are merged into the moving body.
+        kind: 'urdf', 'mjcf' or 'named_robot'.
+        source: path or name that was asked for.
+        file: the file's bytes.
+        held: joints of the file that are held still, and the position they are held at.
+        warnings: what the reader noticed and survived.
+    """
+
+    model: pin.Model
+    joint_types: tuple[str, ...]
+    links: tuple[str, ...]
+    link_inertials: tuple[tuple[str, np.ndarray], ...]
+    kind: str
+    source: str
+    file: XmlFile
+    held: tuple[tuple[str, float], ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def moving_bodies(model: pin.Model) -> tuple[str, ...]:
+    """Name of the first body frame on each joint: the link that the joint moves; others behind it are welded on."""
+    names = {}
+    for frame in model.frames:
+        if frame.type == pin.FrameType.BODY:
+            names.setdefault(frame.parentJoint, frame.name)
+    return tuple(names.get(i, model.names[i]) for i in range(1, model.njoints))

@@ -1,0 +1,239 @@
+"""URDF to a Pinocchio model: kinematics and inertias alone, meshes never opened, every defect named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import numpy as np
+import pinocchio as pin
+
+from lagnet.errors import RobotError
+from lagnet.rigid_body.description import Description, moving_bodies
+from lagnet.rigid_body.urdf_checks import check_tree, numbers
+from lagnet.rigid_body.xml_files import XmlFile
+
+MOVING = ("revolute", "continuous", "prismatic")
+UNLIMITED = "1e300"  # a limit that the URDF parser accepts; callers see inf
+KEPT = {"link": ("inertial",), "joint": ("origin", "parent", "child", "axis", "limit")}
+
+
+def read_urdf(file: XmlFile, kind: str = "urdf", source: str | None = None, held: Iterable[str] = ()) -> Description:
+    """The arm of a URDF file.
+
+    Args:
+        file: the file's bytes.
+        kind: 'urdf' or 'named_robot'.
+        source: what the user asked for, the file's path by default.
+        held: joints to hold at zero, e.g. fingers.
+
+    Raises:
+        RobotError: naming the file and the joint or link at fault.
+    """
+    root = file.root()
+    warnings: list[str] = []
+    types, positions = normalise(root, file.source, held, warnings)
+    model = _build(root, file.source)
+    joint_types = tuple(types[name] for name in model.names[1:])
+    warnings += _mass_warnings(model, file.source)
+    links = moving_bodies(model)
+    inertials = tuple(_link_inertials(root))
+    return Description(
+        model,
+        joint_types,
+        links,
+        inertials,
+        kind,
+        source or file.source,
+        file,
+        tuple(positions.items()),
+        tuple(warnings),
+    )
+
+
+def normalise(
+    root: Element, where: str, held: Iterable[str], warnings: list[str]
+) -> tuple[dict[str, str], dict[str, float]]:
+    """Strips the tree to kinematics and inertias and holds still what does not belong to the arm.
+
+    Continuous joints become revolute ones without limits, so that one angle stands for their position instead of a
+    point on the unit circle: the physics is the same.
+
+    Returns:
+        Type of each moving joint, and the position of each joint held still.
+    """
+    check_tree(root, where)
+    _strip(root)
+    joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
+    positions = _held_positions(joints, set(held), warnings)
+    for name, position in positions.items():
+        _hold(joints[name], position, where)
+    types = {}
+    for name, joint in joints.items():
+        kind = joint.get("type", "")
+        if kind in MOVING:
+            types[name] = kind
+            _prepare(joint, where, warnings)
+    warnings += _leave_out_friction(joints.values())
+    if not types:
+        raise RobotError("has no moving joint", where=where)
+    return types, positions
+
+
+def _strip(root: Element) -> None:
+    """Removes shapes, materials, transmissions and simulator extensions: nothing here that opens another file."""
+    for child in list(root):
+        if child.tag not in KEPT:
+            root.remove(child)
+            continue
+        for part in list(child):
+            if part.tag not in (*KEPT[child.tag], "mimic", "dynamics"):
+                child.remove(part)
+
+
+def _held_positions(joints: dict[str, Element], held: set[str], warnings: list[str]) -> dict[str, float]:
+    positions = {name: 0.0 for name in joints if name in held}
+    for name, joint in joints.items():
+        mimic = joint.find("mimic")
+        if mimic is not None and name not in positions and joint.get("type") in MOVING:
+            positions[name] = float(mimic.get("offset", "0"))
+            warnings.append(
+                f"joint {name} mimics {mimic.get('joint')}: held at {positions[name]:g}, its body welded to the link before"
+            )
+        if mimic is not None:
+            joint.remove(mimic)
+    return positions
+
+
+def _hold(joint: Element, position: float, where: str) -> None:
+    """Turns a moving joint into a fixed one at the given position."""
+    if position:
+        placement = origin_of(joint, where) * _motion(joint, position, where)
+        origin = joint.find("origin")
+        origin = ElementTree.SubElement(joint, "origin") if origin is None else origin
+        write_placement(origin, placement)
+    joint.set("type", "fixed")
+
+
+def _motion(joint: Element, position: float, where: str) -> pin.SE3:
+    axis = axis_of(joint, where)
+    if joint.get("type") == "prismatic":
+        return pin.SE3(np.eye(3), position * axis)
+    return pin.SE3(pin.exp3(position * axis), np.zeros(3))
+
+
+def axis_of(joint: Element, where: str) -> np.ndarray:
+    """Unit axis of a joint in the joint's frame."""
+    element = joint.find("axis")
+    axis = np.array([1.0, 0.0, 0.0]) if element is None else numbers(element, "xyz", 3, where, joint)
+    length = float(np.linalg.norm(axis))
+    if length < 1e-9:
+        raise RobotError(f"joint {joint.get('name')} has an axis of length zero", where=where)
+    return axis / length
+
+
+def origin_of(element: Element, where: str) -> pin.SE3:
+    """Placement given by the `origin` of a joint or an inertial."""
+    origin = element.find("origin")
+    if origin is None:
+        return pin.SE3.Identity()
+    xyz, rpy = (numbers(origin, key, 3, where, element, "0 0 0") for key in ("xyz", "rpy"))
+    return pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz)
+
+
+def write_placement(origin: Element, placement: pin.SE3) -> None:
+    """Writes a placement into an `origin`, with digits that lose nothing."""
+    origin.set("xyz", " ".join(repr(float(x)) for x in placement.translation))
+    origin.set("rpy", " ".join(repr(float(x)) for x in pin.rpy.matrixToRpy(placement.rotation)))
+
+
+def _prepare(joint: Element, where: str, warnings: list[str]) -> None:
+    """Unit axis, complete limits, and what the rigid bodies leave aside said aloud."""
+    axis = joint.find("axis")
+    if axis is not None:
+        axis.set("xyz", " ".join(repr(float(x)) for x in axis_of(joint, where)))
+    limit, continuous = joint.find("limit"), joint.get("type") == "continuous"
+    if limit is None:
+        limit = ElementTree.SubElement(joint, "limit")
+        if not continuous:
+            warnings.append(f"joint {joint.get('name')} has no limit element: taken as unlimited")
+        continuous = continuous or not limit.attrib
+    if continuous:
+        limit.set("lower", f"-{UNLIMITED}")
+        limit.set("upper", UNLIMITED)
+    for key in ("effort", "velocity"):
+        if float(limit.get(key, "0")) <= 0:  # zero is how exporters write "unknown"
+            limit.set(key, UNLIMITED)
+    if joint.get("type") == "continuous":
+        joint.set("type", "revolute")
+
+
+def _leave_out_friction(joints: Iterable[Element]) -> list[str]:
+    """Takes declared damping and friction off: a nominal model of rigid bodies must not explain them away."""
+    found = []
+    for joint in joints:
+        dynamics = joint.find("dynamics")
+        if dynamics is None:
+            continue
+        if any(float(dynamics.get(key, "0")) for key in ("damping", "friction")):
+            found.append(joint.get("name", ""))
+        joint.remove(dynamics)
+    if not found:
+        return []
+    return [f"damping or friction declared on {', '.join(found)} is not part of the rigid bodies and is left out"]
+
+
+def _build(root: Element, where: str) -> pin.Model:
+    text = ElementTree.tostring(root, encoding="unicode")
+    try:
+        model = pin.buildModelFromXML(text)
+    except Exception as error:  # the parser raises bare exceptions of several kinds
+        raise RobotError(f"is not a URDF that can be built ({str(error).strip()})", where=where) from error
+    return model
+
+
+def _link_inertials(root: Element) -> Iterable[tuple[str, np.ndarray]]:
+    for link in root.findall("link"):
+        inertial = link.find("inertial")
+        if inertial is not None:
+            yield link.get("name", ""), inertial_parameters(inertial, link.get("name", ""))
+
+
+def inertial_parameters(inertial: Element, where: str) -> np.ndarray:
+    """Ten inertial parameters of an `inertial` element about the link's origin, in the link's frame."""
+    mass, tensor = inertial.find("mass"), inertial.find("inertia")
+    assert mass is not None and tensor is not None  # checked before
+    m = float(mass.get("value", "nan"))
+    i = {k: float(tensor.get(k, "0")) for k in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
+    about_com = np.array(
+        [[i["ixx"], i["ixy"], i["ixz"]], [i["ixy"], i["iyy"], i["iyz"]], [i["ixz"], i["iyz"], i["izz"]]]
+    )
+    placement = origin_of(inertial, where)
+    return about_origin(m, placement.translation, placement.rotation @ about_com @ placement.rotation.T)
+
+
+def about_origin(mass: float, com: np.ndarray, inertia_about_com: np.ndarray) -> np.ndarray:
+    """(m, mc, I about the frame's origin) in the order of the regressor; holds for negative masses as well."""
+    tensor = inertia_about_com + mass * (com @ com * np.eye(3) - np.outer(com, com))
+    return np.array([mass, *(mass * com), *tensor[np.tril_indices(3)]])
+
+
+def _mass_warnings(model: pin.Model, where: str) -> list[str]:
+    """Moving bodies that no real arm has; those that make the mass matrix singular are errors."""
+    warnings = []
+    subtree = np.array([body.mass for body in model.inertias])
+    for i in range(model.njoints - 1, 0, -1):
+        subtree[model.parents[i]] += subtree[i]
+    for i in range(1, model.njoints):
+        if subtree[i] == 0 and not any(model.inertias[j].inertia.any() for j in model.subtrees[i]):
+            raise RobotError(
+                f"nothing behind joint {model.names[i]} has mass",
+                where=where,
+                next_step=f"give link {moving_bodies(model)[i - 1]} an inertial, or make the joint fixed",
+            )
+        mass = model.inertias[i].mass
+        if mass <= 0 or not math.isfinite(mass):
+            warnings.append(f"the body behind joint {model.names[i]} has a mass of {mass:g} kg")
+    return warnings
