@@ -1,6 +1,7 @@
 """The abstract kinds of left-out physics, and what every effect must say about itself.
 
-An effect adds a torque r to the torque of the nominal model. Two views of the same physics are asked of each final class:
+An effect adds a torque r to the torque of the nominal model. Two views of the same physics are asked of each final
+class:
 
 - `torque(motion, joint, values)`: the exact law, used by corrected models, plots and the last refit;
 - `columns(motion, joint, shape)` for each of `shapes(motion, joint)`: the law made linear, used by the search over
@@ -52,6 +53,8 @@ class Effect(ABC):
     shown_by: ClassVar[str]  # what motion shows it, as advice: "moves in both directions ..."
     confused_with: ClassVar[tuple[str, ...]] = ()  # names in the catalogue
     source: ClassVar[str]  # key in docs/references
+    contains: ClassVar[tuple[str, ...]] = ()  # effects that are special cases of it: never named beside it
+    reaches_all: ClassVar[bool] = False  # True: it changes the torque of other joints too
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[str] = "torque"  # "torque": part of the arm; "signal": acts on the recorded torque after all others
 

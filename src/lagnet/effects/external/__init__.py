@@ -1,0 +1,1 @@
+"""Forces from outside, on an interval of time."""

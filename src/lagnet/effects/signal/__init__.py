@@ -1,0 +1,1 @@
+"""Effects of the sensors and of the clock, which act on the recorded signals."""

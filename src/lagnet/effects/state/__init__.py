@@ -1,0 +1,1 @@
+"""Effects with memory: bristles, gaps and elastic transmissions."""

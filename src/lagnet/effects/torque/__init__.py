@@ -1,0 +1,1 @@
+"""Friction, drag, springs and ripple: torques that act at one joint and depend on its own motion."""

@@ -1,0 +1,137 @@
+"""Which hypotheses can be tried on these recordings, and the columns that each contributes to the torque."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.effects.catalogue import CATALOGUE
+from lagnet.effects.effect import Effect
+from lagnet.effects.motion import Motion
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One effect at one joint (None: the whole arm) with the values of its nonlinear parameters."""
+
+    effect: str
+    joint: int | None
+    shape: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def law(self) -> Effect:
+        """The effect's class in the catalogue."""
+        return CATALOGUE[self.effect]
+
+    @property
+    def place(self) -> tuple[str, int | None]:
+        """Effect and joint, whatever the shape."""
+        return self.effect, self.joint
+
+
+@dataclass(frozen=True)
+class Abstention:
+    """An effect that these recordings cannot show, and why."""
+
+    effect: str
+    joint: int | None
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """The hypotheses, their abstentions, and where their columns stand.
+
+    Columns of joint j: those of its own hypotheses, then those that reach all joints, then the residual itself.
+
+    Args:
+        hypotheses: all of them; the index in this tuple names a hypothesis in a selection.
+        widths: number of columns of each.
+        n_dof: number of joints.
+        abstentions: what was left out.
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    widths: tuple[int, ...]
+    n_dof: int
+    abstentions: tuple[Abstention, ...]
+
+    @cached_property
+    def reaching(self) -> tuple[int, ...]:
+        """Indices of the hypotheses that reach all joints."""
+        return tuple(i for i, h in enumerate(self.hypotheses) if h.law.reaches_all)
+
+    @cached_property
+    def local(self) -> tuple[tuple[int, ...], ...]:
+        """For each joint the indices of the hypotheses that stay there."""
+        own: list[list[int]] = [[] for _ in range(self.n_dof)]
+        for i, h in enumerate(self.hypotheses):
+            if h.joint is not None and not h.law.reaches_all:
+                own[h.joint].append(i)
+        return tuple(map(tuple, own))
+
+    @cached_property
+    def slots(self) -> tuple[dict[int, slice], ...]:
+        """For each joint, the columns of each hypothesis that acts on it."""
+        return tuple(self._slots(j) for j in range(self.n_dof))
+
+    def _slots(self, joint: int) -> dict[int, slice]:
+        found, at = {}, 0
+        for i in (*self.local[joint], *self.reaching):
+            found[i] = slice(at, at + self.widths[i])
+            at += self.widths[i]
+        return found
+
+    def width(self, joint: int) -> int:
+        """Number of columns of a joint, the residual not counted."""
+        return sum(self.widths[i] for i in (*self.local[joint], *self.reaching))
+
+    def tables(self, problem: Problem, piece: Piece) -> Iterator[np.ndarray]:
+        """For each joint the reduced columns of a piece with the residual last, shape (len(keep), width + 1)."""
+        motion = piece.motion(problem)
+        residual = problem.residual(piece)
+        far = [problem.reduce(piece, self._columns(i, motion)) for i in self.reaching]
+        for joint in range(self.n_dof):
+            own = [self._columns(i, motion) for i in self.local[joint]]
+            near = problem.reduce(piece, np.column_stack(own)) if own else np.zeros((piece.keep.size, 0))
+            yield np.column_stack([near, *(f[:, joint] for f in far), residual[:, joint]])
+
+    def _columns(self, index: int, motion: Motion) -> np.ndarray:
+        h = self.hypotheses[index]
+        return h.law.columns(motion, h.joint, dict(h.shape))
+
+
+def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
+    """Every effect of the catalogue at every joint, less those that the recorded motion cannot show."""
+    summary = problem.summary()
+    probe = _head(summary)
+    has_bodies = hasattr(problem.nominal, "link_regressor")
+    hypotheses: list[Hypothesis] = []
+    widths: list[int] = []
+    abstentions: list[Abstention] = []
+    for effect in effects or tuple(CATALOGUE.values()):
+        for joint in (None,) if effect.whole_arm else range(problem.n_dof):
+            reason = _reason_against(effect, summary, joint, has_bodies)
+            shapes = () if reason else effect.shapes(summary, joint)
+            if not shapes:
+                abstentions.append(Abstention(effect.name, joint, reason or "the speeds do not resolve its shape"))
+            for shape in shapes:
+                hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
+                widths.append(effect.columns(probe, joint, shape).shape[-1])
+    return Library(tuple(hypotheses), tuple(widths), problem.n_dof, tuple(abstentions))
+
+
+def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodies: bool) -> str | None:
+    if effect.needs_bodies and not has_bodies:
+        return "the nominal model has no kinematics from which a body's torque could be computed"
+    return effect.excitation(motion, joint)
+
+
+def _head(motion: Motion, n: int = 40) -> Motion:
+    rows = slice(0, n)
+    time = np.arange(motion.time[rows].size, dtype=float) * 0.01
+    return Motion(time, motion.q[rows], motion.v[rows], motion.a[rows], motion.load[rows], motion.slow, motion.model)

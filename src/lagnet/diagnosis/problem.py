@@ -1,0 +1,173 @@
+"""The diagnosis' view of recordings: pieces of motion, their nominal torque, and the samples that are evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from lagnet.effects.motion import Motion
+from lagnet.errors import DiagnosisError
+from lagnet.recordings.conditioning import Conditioned, Stretch
+from lagnet.recordings.smoothing import SETTLING, low_pass
+from lagnet.types import InverseDynamics
+
+OVERSAMPLING = 2.5  # reduced samples per second over the bandwidth: Nyquist with room for the filter's slope
+LONGEST = 20_000  # samples of a piece: bounds the memory of a regressor
+REST = 0.6  # a joint rests where it stays slow for this many periods of the bandwidth
+SUMMARY = 6_000  # samples of the summary motion
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A stretch, or part of a long one, at full rate.
+
+    Args:
+        time: shape (n,); q, v, a, tau, load: shape (n, dof); load is the nominal torque.
+        recording: index of its recording.
+        keep: rows that count after low-pass and decimation, edges left out.
+        counts: shape (len(keep), dof), False where the joint rests and dry friction may take any value.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    tau: np.ndarray
+    load: np.ndarray
+    recording: int
+    keep: np.ndarray
+    counts: np.ndarray
+
+    def motion(self, problem: Problem) -> Motion:
+        """The piece as the effects see it."""
+        return Motion(self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal)
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Fit and held-out pieces of one diagnosis.
+
+    Args:
+        nominal: the model that is held against the recordings.
+        fit, holdout: pieces; the second are never used to fit.
+        rate, bandwidth: [Hz].
+        slow: shape (dof,), blurred speed of each joint.
+        joints: names.
+    """
+
+    nominal: InverseDynamics
+    fit: tuple[Piece, ...]
+    holdout: tuple[Piece, ...]
+    rate: float
+    bandwidth: float
+    slow: np.ndarray
+    joints: tuple[str, ...]
+    scale: np.ndarray = field(default_factory=lambda: np.ones(0))
+
+    @property
+    def n_dof(self) -> int:
+        """Number of joints."""
+        return len(self.joints)
+
+    def reduce(self, piece: Piece, x: np.ndarray) -> np.ndarray:
+        """The low-pass of a signal at the samples that count, shape (len(keep), ...); the same for torque and model."""
+        flat = x.reshape(x.shape[0], -1)
+        return low_pass(flat, self.rate, self.bandwidth)[piece.keep].reshape(piece.keep.size, *x.shape[1:])
+
+    def residual(self, piece: Piece) -> np.ndarray:
+        """What the nominal torque lacks, low-passed and decimated, shape (len(keep), dof)."""
+        return self.reduce(piece, piece.tau - piece.load)
+
+    def summary(self) -> Motion:
+        """Samples from all over the fit pieces, for statistics of the motion (not a time series)."""
+        total = sum(p.keep.size for p in self.fit)
+        every = max(1, total // SUMMARY)
+        rows = [p.keep[::every] for p in self.fit]
+        pick = {n: np.concatenate([getattr(p, n)[r] for p, r in zip(self.fit, rows, strict=True)]) for n in
+                ("time", "q", "v", "a", "load")}
+        return Motion(**pick, slow=self.slow, model=self.nominal)
+
+
+def pose_problem(nominal: InverseDynamics, fit: Conditioned, holdout: Conditioned) -> Problem:
+    """Computes the nominal torque on every stretch and picks the samples that count.
+
+    Raises:
+        DiagnosisError: no stretch is long enough.
+    """
+    slow = blurred_speed(fit)
+    empty = Problem(nominal, (), (), fit.rate, fit.bandwidth, slow, tuple(nominal.joints))
+    posed = replace(empty, fit=tuple(_pieces(empty, fit)), holdout=tuple(_pieces(empty, holdout)))
+    if not posed.fit or not posed.holdout:
+        raise DiagnosisError(
+            "no stretch of motion is long enough to be filtered",
+            next_step=f"record at least {4.0 / fit.bandwidth:.1f} s without a gap, for fitting and for holding out",
+        )
+    power = sum(np.sum(problem_torque**2, axis=0) for problem_torque in _centred_torque(posed))
+    count = sum(p.keep.size for p in posed.fit)
+    return replace(posed, scale=np.sqrt(power / count))
+
+
+def _centred_torque(problem: Problem) -> list[np.ndarray]:
+    torque = [problem.reduce(p, p.tau) for p in problem.fit]
+    mean = np.concatenate(torque).mean(axis=0)
+    return [t - mean for t in torque]
+
+
+def blurred_speed(conditioned: Conditioned) -> np.ndarray:
+    """Speed below which the sign of each joint's velocity is not known, shape (dof,) [rad/s].
+
+    Noise blurs it, and so does the clock: between two samples the joint may already have turned.
+    """
+    v = np.concatenate([s.v for s in conditioned.stretches])
+    a = np.concatenate([s.a for s in conditioned.stretches])
+    usual, change = np.sqrt(np.mean(v**2, axis=0)), np.sqrt(np.mean(a**2, axis=0)) / conditioned.rate
+    floor = 0.003 * float(np.max(usual)) if usual.size else 0.0
+    return np.maximum.reduce([2.5 * conditioned.noise_v, 0.5 * change, 0.01 * usual, np.full_like(usual, floor + 1e-9)])
+
+
+def _pieces(problem: Problem, conditioned: Conditioned) -> Iterator[Piece]:
+    settle = int(np.ceil(SETTLING * problem.rate / problem.bandwidth))
+    step = max(1, int(problem.rate / (OVERSAMPLING * problem.bandwidth)))
+    for stretch in conditioned.stretches:
+        for start, stop, first, last in _cuts(stretch.time.size, settle, step):
+            yield _piece(problem, stretch, slice(start, stop), np.arange(first - start, last - start, step))
+
+
+def _cuts(n: int, settle: int, step: int) -> Iterator[tuple[int, int, int, int]]:
+    """Start and stop of each piece and, inside it, of the samples that count; pieces overlap where filters settle."""
+    first = settle
+    while first < n - settle:
+        last = min(first + step * (LONGEST // step), n - settle)
+        yield max(0, first - 4 * settle), min(n, last + 4 * settle), first, last
+        first = last
+
+
+def _piece(problem: Problem, stretch: Stretch, rows: slice, keep: np.ndarray) -> Piece:
+    q, v, a = stretch.q[rows], stretch.v[rows], stretch.a[rows]
+    load = problem.nominal.inverse_dynamics(q, v, a)
+    counts = ~_resting(v, problem)[keep]
+    return Piece(stretch.time[rows], q, v, a, stretch.tau[rows], load, stretch.recording, keep, counts)
+
+
+def _resting(v: np.ndarray, problem: Problem) -> np.ndarray:
+    """Where a joint rests, widened by what the filter smears, shape (n, dof)."""
+    window = max(3, int(REST * problem.rate / problem.bandwidth))
+    still = np.abs(v) < problem.slow
+    return np.column_stack([_long_runs(still[:, j], window) for j in range(v.shape[1])])
+
+
+def _long_runs(flags: np.ndarray, window: int) -> np.ndarray:
+    """Runs of at least `window` true flags, widened by half a window on both sides."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    out = np.zeros_like(flags)
+    for start, stop in edges.reshape(-1, 2):
+        if stop - start >= window:
+            out[max(0, start - window // 2) : stop + window // 2] = True
+    return out
+
+
+def same_recordings(pieces: Sequence[Piece]) -> list[int]:
+    """Indices of the recordings that the pieces come from, in order."""
+    return sorted({p.recording for p in pieces})

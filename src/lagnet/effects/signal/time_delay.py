@@ -1,0 +1,39 @@
+"""Time delay: torque recorded later than the motion it belongs to."""
+
+from collections.abc import Mapping
+from typing import final
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.excitation import needs_motion
+from lagnet.effects.motion import Motion
+
+
+@final
+class TimeDelay(Effect):
+    """Torque is logged T later than position: the recording holds τ(t − T), to first order r = −T dτ/dt."""
+
+    name = "time_delay"
+    title = "Time delay of the torque"
+    formula = "τ(t − T) − τ(t)"
+    parameters = (Parameter("T", "T", "s", "time by which torque lags motion", lower=-0.25, upper=0.25),)
+    stage = "signal"
+    shown_by = "fast motion with quick changes of torque"
+    confused_with = ("viscous_friction", "joint_elasticity", "backlash")
+    source = "swevers2007"
+
+    def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
+        return -np.gradient(motion.load[:, joint], motion.time)[:, None]
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        return {"T": float(np.clip(coefficients[0], -0.25, 0.25))}
+
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        time, load = motion.time, motion.load[:, joint]
+        earlier = np.clip(time - values["T"], time[0], time[-1])
+        return CubicSpline(time, load)(earlier) - load
+
+    def excitation(self, motion: Motion, joint: int) -> str | None:
+        return needs_motion(motion, joint)

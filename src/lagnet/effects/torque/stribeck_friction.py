@@ -1,0 +1,53 @@
+"""Stribeck friction: dry friction that is larger at low speed than at high speed."""
+
+from collections.abc import Mapping, Sequence
+from typing import final
+
+import numpy as np
+
+from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.excitation import needs_slow_passes
+from lagnet.effects.motion import Motion
+
+GRID = 9  # Stribeck speeds tried between the blurred zone and the usual speed of the joint
+
+
+@final
+class StribeckFriction(Effect):
+    """Friction falls as a lubricant film builds up with speed: r = (Fc + Fs exp(−(v/vs)²)) s(v)."""
+
+    name = "stribeck_friction"
+    title = "Stribeck friction"
+    formula = "(Fc + Fs exp(−(v/vs)²)) s(v)"
+    parameters = (
+        Parameter("Fc", "F_c", "N m", "dry friction at speed", lower=0.0),
+        Parameter("Fs", "F_s", "N m", "extra friction close to standstill", lower=0.0),
+        Parameter("vs", "v_s", "rad/s", "speed at which the extra friction has fallen to 1/e", lower=0.0),
+    )
+    shown_by = "slow passes through zero speed"
+    confused_with = ("coulomb_friction", "backlash", "presliding_hysteresis")
+    contains = ("coulomb_friction",)
+    source = "armstrong1994"
+
+    def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
+        usual = float(np.sqrt(np.mean(motion.v[:, joint] ** 2)))
+        lowest = 3.0 * motion.slow[joint]
+        if not usual > 1.5 * lowest:
+            return ()
+        return tuple({"vs": float(vs)} for vs in np.geomspace(lowest, usual, GRID))
+
+    def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
+        direction = motion.direction(joint)
+        return np.column_stack([direction, np.exp(-((motion.v[:, joint] / shape["vs"]) ** 2)) * direction])
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros(2), np.full(2, np.inf)
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        return {"Fc": float(coefficients[0]), "Fs": float(coefficients[1]), "vs": float(shape["vs"])}
+
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        return self.columns(motion, joint, values) @ np.array([values["Fc"], values["Fs"]])
+
+    def excitation(self, motion: Motion, joint: int) -> str | None:
+        return needs_slow_passes(motion, joint)

@@ -1,0 +1,209 @@
+"""From samples as recorded to motion on an even clock, with what noise is left in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from lagnet.recordings.noise import band_noise, motion_bandwidth, white_noise
+from lagnet.recordings.recording import Recording
+from lagnet.recordings.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
+from lagnet.recordings.stretches import stretches_of
+
+OVER_MOTION = 12.0  # bandwidth over that of the motion: friction at reversals is quicker than the motion
+LEAST, MOST = 5.0, 40.0  # [Hz] limits of the bandwidth
+OF_RATE = 0.2  # of the sample rate: the most that a bandwidth may be
+WIDER = 2.0  # motion is filtered this much wider than torque, so that its own filter does not colour the torque
+DISAGREEMENT = 0.05  # recorded velocity further than this from that of the positions is not used
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """One uninterrupted stretch of motion on an even clock.
+
+    Args:
+        time: shape (n,), [s].
+        q, v, a: shape (n, dof), smoothed motion.
+        tau: shape (n, dof), recorded torque on the same clock, not filtered.
+        recording: index of the recording it is part of.
+        first, last: rows of the recording at its two ends, inclusive.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    tau: np.ndarray
+    recording: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, eq=False)
+class Conditioned:
+    """Recordings on one even clock.
+
+    Args:
+        stretches: the uninterrupted stretches, in order.
+        rate: sample rate [Hz].
+        bandwidth: zero-phase low-pass for torques, recorded and modelled alike [Hz].
+        velocity_from, acceleration_from: "recorded" or "differentiated".
+        noise_q, noise_v, noise_a, noise_tau: shape (dof,), what noise leaves after filtering, standard deviations.
+        white_q, white_tau: shape (dof,), noise of the samples as recorded.
+    """
+
+    stretches: tuple[Stretch, ...]
+    rate: float
+    bandwidth: float
+    velocity_from: str
+    acceleration_from: str
+    noise_q: np.ndarray
+    noise_v: np.ndarray
+    noise_a: np.ndarray
+    noise_tau: np.ndarray
+    white_q: np.ndarray
+    white_tau: np.ndarray
+
+
+def choose_bandwidth(recordings: Sequence[Recording]) -> float:
+    """Bandwidth [Hz] for torques: a multiple of the motion's, within what the sample rate allows."""
+    rates = np.array([r.rate for r in recordings])
+    found = [motion_bandwidth(*_longest_even(r)) for r in recordings if len(r) > SHORTEST]
+    motion = float(np.median(found)) if found else 0.0
+    return float(min(np.clip(OVER_MOTION * motion, LEAST, MOST), OF_RATE * rates.min()))
+
+
+def _longest_even(recording: Recording) -> tuple[np.ndarray, float]:
+    """Positions of the longest stretch on an even clock, and its rate: a jittering clock would look like motion."""
+    rows = max(stretches_of(recording), key=lambda r: r.stop - r.start)
+    time = recording.time[rows]
+    return resample(time, recording.q[rows], even_clock(time, recording.rate)), recording.rate
+
+
+def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -> Conditioned:
+    """Puts recordings on an even clock, smooths their motion without phase shift and differentiates it.
+
+    Args:
+        recordings: one or more of the same joints.
+        bandwidth: [Hz], chosen from the data if not given.
+    """
+    chosen = choose_bandwidth(recordings) if bandwidth is None else bandwidth
+    rate = float(np.median([r.rate for r in recordings]))
+    motion_band = min(WIDER * chosen, 0.4 * rate)
+    noise = _noise(recordings, rate)
+    blend = _velocity_crossover(recordings, noise, rate, motion_band)
+    stretches = []
+    for index, recording in enumerate(recordings):
+        for rows in stretches_of(recording):
+            if rows.stop - rows.start >= SHORTEST:
+                stretches.append(_stretch(recording, rows, index, rate, motion_band, blend))
+    noise_q = band_noise(noise["q"], rate, motion_band)
+    noise_v, noise_a = _derived_noise(noise, rate, chosen, motion_band, blend)
+    return Conditioned(
+        stretches=tuple(stretches),
+        rate=rate,
+        bandwidth=chosen,
+        velocity_from="differentiated" if blend is None else "recorded",
+        acceleration_from="differentiated",
+        noise_q=noise_q,
+        noise_v=noise_v,
+        noise_a=noise_a,
+        noise_tau=band_noise(noise["tau"], rate, chosen),
+        white_q=noise["q"],
+        white_tau=noise["tau"],
+    )
+
+
+def _stretch(
+    recording: Recording, rows: slice, index: int, rate: float, motion_band: float, blend: float | None
+) -> Stretch:
+    time = recording.time[rows]
+    clock = even_clock(time, rate)
+    q = low_pass(resample(time, recording.q[rows], clock), rate, motion_band)
+    v = derivative(clock, q)
+    if blend is not None and recording.v is not None:
+        difference = low_pass(resample(time, recording.v[rows], clock), rate, motion_band) - v
+        v = v + difference - low_pass(difference, rate, blend)
+    a = derivative(clock, v)
+    tau = resample(time, recording.tau[rows], clock)
+    return Stretch(clock, q, v, a, tau, index, rows.start, rows.stop - 1)
+
+
+def _noise(recordings: Sequence[Recording], rate: float) -> dict[str, np.ndarray]:
+    """White noise of q, v and tau, the root mean square over stretches."""
+    powers: dict[str, list[np.ndarray]] = {"q": [], "v": [], "tau": []}
+    weights: list[int] = []
+    for recording in recordings:
+        for rows in stretches_of(recording):
+            if rows.stop - rows.start < SHORTEST:
+                continue
+            weights.append(rows.stop - rows.start)
+            time = recording.time[rows]
+            clock = even_clock(time, rate)
+            for name in powers:
+                signal = getattr(recording, name)
+                if signal is not None:
+                    powers[name].append(white_noise(resample(time, signal[rows], clock)) ** 2)
+    return {n: np.sqrt(np.average(p, axis=0, weights=weights)) for n, p in powers.items() if len(p) == len(weights) > 0}
+
+
+def _velocity_crossover(
+    recordings: Sequence[Recording], noise: dict[str, np.ndarray], rate: float, motion_band: float
+) -> float | None:
+    """Frequency [Hz] above which recorded velocity is less noisy than differentiated position; None: do not use it."""
+    if "v" not in noise or not all(_velocity_agrees(r, rate, motion_band) for r in recordings):
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = noise["v"] / noise["q"] / (2.0 * np.pi)
+    finite = ratio[np.isfinite(ratio) & (ratio > 0)]
+    crossover = float(np.median(finite)) if finite.size else np.inf
+    lowest = 2.0 * rate / max(len(r) for r in recordings) + 0.1
+    return max(crossover, lowest) if crossover < 0.8 * motion_band else None
+
+
+def _velocity_agrees(recording: Recording, rate: float, motion_band: float) -> bool:
+    """Whether recorded velocity is the derivative of position, without lag, as far as the motion goes."""
+    if recording.v is None:
+        return False
+    off, power = np.zeros(recording.n_dof), np.zeros(recording.n_dof)
+    for rows in stretches_of(recording):
+        if rows.stop - rows.start < 4 * SHORTEST:
+            continue
+        time = recording.time[rows]
+        clock = even_clock(time, rate)
+        v = derivative(clock, low_pass(resample(time, recording.q[rows], clock), rate, motion_band))
+        recorded = low_pass(resample(time, recording.v[rows], clock), rate, motion_band)
+        inside = slice(SHORTEST, -SHORTEST)
+        off += np.sum(low_pass(recorded - v, rate, 0.25 * motion_band)[inside] ** 2, axis=0)
+        power += np.sum(v[inside] ** 2, axis=0)
+    moving = power > 0.01 * power.max() if power.size else np.zeros(0, bool)
+    return bool(power.any() and np.all(off[moving] < DISAGREEMENT**2 * power[moving]))
+
+
+def _derived_noise(
+    noise: dict[str, np.ndarray], rate: float, band: float, motion_band: float, blend: float | None
+) -> tuple[np.ndarray, np.ndarray]:
+    if blend is None:
+        return band_noise(noise["q"], rate, motion_band, 1), band_noise(noise["q"], rate, band, 2)
+    slow_v, slow_a = (band_noise(noise["q"], rate, min(blend, band), k) for k in (1, 2))
+    quick_v, quick_a = (band_noise(noise["v"], rate, b, k) for b, k in ((motion_band, 0), (band, 1)))
+    return np.hypot(slow_v, quick_v), np.hypot(slow_a, quick_a)
+
+
+def motion_at_samples(recording: Recording, conditioned: Conditioned, index: int) -> tuple[np.ndarray, ...]:
+    """Smoothed q, v, a at every sample of the recording as given, each of shape (n, dof).
+
+    Samples outside every stretch (too short a run between gaps) keep their position, at rest.
+    """
+    q, v, a = recording.q.copy(), np.zeros_like(recording.q), np.zeros_like(recording.q)
+    for stretch in conditioned.stretches:
+        if stretch.recording != index:
+            continue
+        rows = slice(stretch.first, stretch.last + 1)
+        at = np.clip(recording.time[rows], stretch.time[0], stretch.time[-1])
+        for out, signal in ((q, stretch.q), (v, stretch.v), (a, stretch.a)):
+            out[rows] = make_interp_spline(stretch.time, signal, k=3, axis=0)(at)
+    return q, v, a

@@ -1,0 +1,23 @@
+"""Where a recording is uninterrupted: between gaps in its clock and ends of trajectories."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from lagnet.recordings.recording import Recording
+
+GAP = 8.0  # steps longer than this many median steps interrupt a stretch
+
+
+def stretches_of(recording: Recording) -> list[slice]:
+    """Rows of each uninterrupted stretch, in order; repeated timestamps do not interrupt."""
+    if not len(recording):
+        return []
+    steps = np.diff(recording.time)
+    same = np.diff(recording.trajectory) == 0
+    usual = np.median(steps[same]) if same.any() else 0.0
+    cuts = np.flatnonzero(~same | (steps > GAP * usual)) + 1
+    edges = [0, *cuts.tolist(), len(recording)]
+    return [slice(a, b) for a, b in pairwise(edges) if b > a]
