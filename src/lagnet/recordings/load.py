@@ -1,0 +1,255 @@
+"""Reads a recording file of any supported format into a `Recording`, or says in one line why it cannot."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lagnet.errors import RecordingError
+from lagnet.recordings import clock, units
+from lagnet.recordings.column_map import ColumnMap, read_column_map
+from lagnet.recordings.layout import Header, Layout, find_layout
+from lagnet.recordings.readers.source import MAX_BYTES, Table, TableSource, refuse_if_huge
+from lagnet.recordings.recording import Recording
+
+READERS = {
+    ".csv": ("lagnet.recordings.readers.csv_file", "CsvSource"),
+    ".csv.gz": ("lagnet.recordings.readers.csv_file", "CsvSource"),
+    ".parquet": ("lagnet.recordings.readers.parquet_file", "ParquetSource"),
+    ".npz": ("lagnet.recordings.readers.npz_file", "NpzSource"),
+    ".mat": ("lagnet.recordings.readers.mat_file", "MatSource"),
+}
+MIN_SAMPLES = 20  # fewer say nothing about noise, and cannot be filtered or split
+SHORT_MOTION = 5  # samples of one trajectory below which it cannot be differentiated
+
+
+@dataclass(frozen=True)
+class JointFacts:
+    """What the caller knows of the joints.
+
+    Args:
+        joints: names in model order, or None.
+        n_dof: number of joints, or None.
+        torque_constant: shape (dof,), [N m/A] or [N/A], or None.
+        ranges: limits and kinds of the joints, or None.
+    """
+
+    joints: tuple[str, ...] | None
+    n_dof: int | None
+    torque_constant: np.ndarray | None
+    ranges: units.JointRanges | None
+
+
+def load_recording(
+    path: str | Path,
+    *,
+    robot: Any = None,
+    n_dof: int | None = None,
+    joints: Sequence[str] | None = None,
+    columns: str | Path | ColumnMap | None = None,
+    torque_constant: Sequence[float] | np.ndarray | float | None = None,
+    limits: np.ndarray | None = None,
+) -> Recording:
+    """Read what a robot did: positions, torques and, where recorded, velocities and accelerations, all in SI units.
+
+    Args:
+        path: .csv, .csv.gz, .parquet, .npz or .mat file.
+        robot: anything with `joints` and `n_dof`, and perhaps `position_lower`, `position_upper` and `joint_types`.
+        n_dof: number of joints, where there is no robot; None to take it from the file.
+        joints: joint names, where there is no robot; None for the file's names or joint_0, joint_1, ….
+        columns: mapping of foreign column names and units, or the TOML file that holds it.
+        torque_constant: shape (dof,), [N m/A] or [N/A], turns motor current into joint torque; one number serves all.
+        limits: shape (dof, 2), lower and upper position [rad] or [m], in place of the robot's; inf where unlimited.
+
+    Returns:
+        The recording on the file's own clock; `warnings` tells what was survived.
+
+    Raises:
+        RecordingError: one line with file, row or column, what is wrong and what would mend it.
+    """
+    where = str(path)
+    column_map = columns if isinstance(columns, ColumnMap) else read_column_map(columns) if columns else ColumnMap()
+    facts = _facts(robot, joints, n_dof, torque_constant, limits, column_map, where)
+    source, sha256 = open_source(path)
+    layout = find_layout(Header(source.names, source.joints, column_map, where), facts.joints, facts.n_dof)
+    table = source.read(layout.numbers, layout.trajectory)
+    return _Assembly(table, layout, column_map, facts, where).recording(sha256)
+
+
+def open_source(path: str | Path) -> tuple[TableSource, str]:
+    """The opened file and the sha256 of its bytes.
+
+    Raises:
+        RecordingError: no such file, unknown suffix, empty, or too big.
+    """
+    path, where = Path(path), str(path)
+    suffix = next((s for s in sorted(READERS, key=len, reverse=True) if path.name.lower().endswith(s)), None)
+    if suffix is None:
+        raise RecordingError(f"unknown kind of file {path.suffix!r}", where=where, choices=READERS)
+    if not path.is_file():
+        what = "is a folder, not a recording" if path.is_dir() else "does not exist"
+        raise RecordingError(what, where=where, next_step="check the path")
+    refuse_if_huge(path.stat().st_size, where)
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise RecordingError(f"cannot be read ({error.strerror})", where=where) from None
+    if not data:
+        raise RecordingError("the file is empty", where=where, next_step="record again or give another file")
+    module, name = READERS[suffix]
+    reader: Callable[[bytes, str], TableSource] = getattr(import_module(module), name)
+    return reader(data, where), hashlib.sha256(data).hexdigest()
+
+
+def _facts(
+    robot: Any,
+    joints: Sequence[str] | None,
+    n_dof: int | None,
+    torque_constant: Any,
+    limits: np.ndarray | None,
+    column_map: ColumnMap,
+    where: str,
+) -> JointFacts:
+    names = tuple(robot.joints) if robot is not None else None if joints is None else tuple(joints)
+    if n_dof is not None and names is not None and len(names) != n_dof:
+        raise RecordingError(f"n_dof = {n_dof} was given with {len(names)} joint names", where=where)
+    if n_dof is not None and n_dof < 1:
+        raise RecordingError(f"n_dof must be at least 1, not {n_dof}", where=where)
+    constants = column_map.torque_constant if torque_constant is None else torque_constant
+    ranges = None
+    if limits is not None:
+        lower, upper = np.asarray(limits, dtype=float).T
+        ranges = units.JointRanges(lower, upper, ("unknown",) * lower.size)
+    elif robot is not None:
+        ranges = _ranges_of(robot)
+    return JointFacts(names, n_dof, None if constants is None else np.atleast_1d(np.asarray(constants, float)), ranges)
+
+
+def _ranges_of(robot: Any) -> units.JointRanges:
+    n_dof = len(robot.joints)
+    blank = units.unknown_ranges(n_dof)
+    lower, upper = getattr(robot, "position_lower", None), getattr(robot, "position_upper", None)
+    types = getattr(robot, "joint_types", None)
+    return units.JointRanges(
+        blank.lower if lower is None else np.asarray(lower, float),
+        blank.upper if upper is None else np.asarray(upper, float),
+        blank.types if types is None else tuple(types),
+    )
+
+
+@dataclass(frozen=True)
+class _Assembly:
+    """Turns a table into a recording, check by check."""
+
+    table: Table
+    layout: Layout
+    column_map: ColumnMap
+    facts: JointFacts
+    where: str
+
+    def recording(self, sha256: str) -> Recording:
+        rows, layout = self.table.rows, self.layout
+        time = self.table.numbers[layout.time] * self.column_map.factor("time")
+        self._refuse_few(time.size)
+        self._refuse_not_finite()
+        motions = clock.motions(self.table.labels, time.size, rows, self.where)
+        clock.refuse_backward(time, motions.index, self.table.labels is not None, rows, self.where)
+        keep, repeats = clock.first_of_repeats(time, motions.index, rows)
+        self._refuse_few(int(keep.sum()))
+        signals = {kind: self._signal(kind)[keep] for kind in layout.signals}
+        time, index = time[keep], motions.index[keep]
+        self._refuse_wrong_units(time, index, signals)
+        warnings = (*self.table.warnings, *layout.warnings, *repeats, *self._short_motions(index, motions.names))
+        return Recording(
+            time=time,
+            q=signals["q"],
+            tau=signals["tau"] if "tau" in signals else self._torque(signals["current"]),
+            joints=layout.joints,
+            v=signals.get("v"),
+            a=signals.get("a"),
+            trajectory=index,
+            trajectory_names=motions.names,
+            path=self.where,
+            sha256=sha256,
+            warnings=(
+                *warnings,
+                *clock.describe_steps(time, index, motions.names, rows.without(np.flatnonzero(~keep))),
+            ),
+        )
+
+    def _refuse_few(self, n: int) -> None:
+        if n < MIN_SAMPLES:
+            raise RecordingError(
+                f"holds {n} usable sample{'s' * (n != 1)}, at least {MIN_SAMPLES} are needed",
+                where=self.where,
+                next_step="record a longer motion",
+            )
+
+    def _refuse_not_finite(self) -> None:
+        worst: tuple[int, str] | None = None
+        for name, values in self.table.numbers.items():
+            bad = np.flatnonzero(~np.isfinite(values))
+            if bad.size and (worst is None or bad[0] < worst[0]):
+                worst = int(bad[0]), name
+        if worst is None:
+            return
+        row, name = worst
+        value = self.table.numbers[name][row]
+        what = "is not a number (NaN or an empty cell)" if np.isnan(value) else "is infinite"
+        count = sum(int(np.sum(~np.isfinite(values))) for values in self.table.numbers.values())
+        raise RecordingError(
+            f"{self.table.rows.of(row)}, column {name}: {what}"
+            + (f" ({count} such cells in all)" if count > 1 else ""),
+            where=self.where,
+            next_step="remove these samples, or split the recording there with a trajectory column",
+        )
+
+    def _signal(self, kind: str) -> np.ndarray:
+        """Shape (n, dof), in SI units (amperes for current)."""
+        columns = self.layout.signals[kind]
+        scaled = [
+            self.table.numbers[name] * self.column_map.factor(kind, i, self.layout.joints[i])
+            for i, name in enumerate(columns)
+        ]
+        return np.stack(scaled, axis=1)
+
+    def _refuse_wrong_units(self, time: np.ndarray, index: np.ndarray, signals: dict[str, np.ndarray]) -> None:
+        joints = self.layout.joints
+        stated = np.array([self.column_map.states_unit("q", i, joint) for i, joint in enumerate(joints)])
+        ranges = self.facts.ranges or units.unknown_ranges(len(joints))
+        if ranges.lower.size != len(joints) or len(ranges.types) != len(joints):
+            raise RecordingError(f"limits are given for {ranges.lower.size} of {len(joints)} joints", where=self.where)
+        units.refuse_degrees(signals["q"], ranges, joints, stated, self.where)
+        if "v" in signals and "v" not in self.column_map.scale:
+            units.refuse_degrees_per_second(time, index, signals["q"], signals["v"], joints, self.where)
+
+    def _torque(self, current: np.ndarray) -> np.ndarray:
+        """Joint torque from motor current, shape (n, dof), [N m] or [N]."""
+        constants, n_dof = self.facts.torque_constant, len(self.layout.joints)
+        if constants is None:
+            raise RecordingError(
+                "holds motor current, which needs a torque constant [N m/A] per joint",
+                where=self.where,
+                next_step="give a --columns file with [torque_constant] values = [...]"
+                f" ({n_dof} number{'s' * (n_dof != 1)}), or torque_constant=[...] in Python",
+            )
+        if constants.size not in (1, n_dof) or not np.isfinite(constants).all() or (constants == 0).any():
+            raise RecordingError(
+                f"{constants.size} torque constants were given for {n_dof} joints",
+                where=self.where,
+                next_step=f"give {n_dof} numbers [N m/A] other than zero, in joint order",
+            )
+        return current * constants
+
+    def _short_motions(self, index: np.ndarray, names: tuple[str, ...]) -> tuple[str, ...]:
+        short = np.flatnonzero(np.bincount(index, minlength=len(names)) < SHORT_MOTION)
+        if not short.size:
+            return ()
+        return (f"{short.size} trajectories have fewer than {SHORT_MOTION} samples, the first is {names[short[0]]}",)
