@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 TIP_WRENCH = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
@@ -65,7 +65,7 @@ def coriolis_matrix(model: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarra
     return out
 
 
-def regressor(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray, columns: slice) -> np.ndarray:
+def regressor(model: pin.Model, columns: slice, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
     """Columns of the joint torque regressor, shape (n, dof, number of columns)."""
     data, compute, shape = model.createData(), pin.computeJointTorqueRegressor, (model.nv, 10 * model.nv)
     out = np.empty((len(q), model.nv, len(range(*columns.indices(10 * model.nv)))))
@@ -74,7 +74,7 @@ def regressor(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray, col
     return out
 
 
-def tip_jacobian(model: pin.Model, q: np.ndarray, frame: int) -> np.ndarray:
+def tip_jacobian(model: pin.Model, frame: int, q: np.ndarray) -> np.ndarray:
     """Velocity of a frame per joint velocity, axes of the base, shape (n, 6, dof)."""
     data, jacobian = model.createData(), pin.computeFrameJacobian
     out = np.empty((len(q), 6, model.nv))

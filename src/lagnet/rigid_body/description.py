@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.rigid_body.xml_files import XmlFile
-
-EARTH = (0.0, 0.0, -9.81)  # [m/s²], standing base, z up
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,3 +46,11 @@ def moving_bodies(model: pin.Model) -> tuple[str, ...]:
         if frame.type == pin.FrameType.BODY:
             names.setdefault(frame.parentJoint, frame.name)
     return tuple(names.get(i, model.names[i]) for i in range(1, model.njoints))
+
+
+def friction_warning(joints: Iterable[str]) -> list[str]:
+    """What is said of declared friction: the torque it would explain must stay visible in a comparison."""
+    names = ", ".join(joints)
+    if not names:
+        return []
+    return [f"damping or friction declared on {names} is not part of the rigid bodies and is left out"]

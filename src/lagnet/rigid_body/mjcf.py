@@ -8,10 +8,11 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import Description, moving_bodies
+from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
+from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.xml_files import XmlFile
 
 KEPT = ("compiler", "default", "option", "worldbody")
@@ -38,6 +39,7 @@ def read_mjcf(file: XmlFile) -> Description:
         raise RobotError("has no moving joint", where=where)
     types = tuple(_type(model, i) for i in range(1, model.njoints))
     _check_finite(model, where)
+    warnings += _friction_warnings(model) + mass_warnings(model, where)
     return Description(model, types, moving_bodies(model), (), "mjcf", where, file, (), tuple(warnings))
 
 
@@ -73,10 +75,6 @@ def _simplify_body(body: Element, where: str) -> list[str]:
         if kind not in SUPPORTED:
             what = f"joint {joint.get('name', '')} of body {name} is of type '{kind}', which has no single position"
             raise RobotError(what, where=where, choices=SUPPORTED)
-        if any(float(joint.get(key, "0").split()[0]) for key in ("damping", "frictionloss")):
-            warnings.append(
-                f"joint {joint.get('name', '')} declares damping or friction: not part of the rigid bodies, left out"
-            )
     if len(joints) > 1:
         raise RobotError(f"body {name} has {len(joints)} joints; give each its own body", where=where)
     has_inertial = body.find("inertial") is not None
@@ -96,6 +94,11 @@ def _build(root: Element, where: str) -> pin.Model:
             return pin.buildModelFromMJCF(str(path))
         except Exception as error:  # the parser raises bare exceptions of several kinds
             raise RobotError(f"is not an MJCF that can be built ({str(error).strip()})", where=where) from error
+
+
+def _friction_warnings(model: pin.Model) -> list[str]:
+    friction = zip(model.names[1:], model.damping, model.friction, strict=True)
+    return friction_warning(name for name, damping, dry in friction if damping or dry)
 
 
 def _type(model: pin.Model, i: int) -> str:

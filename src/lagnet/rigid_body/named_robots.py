@@ -57,12 +57,12 @@ def _did_you_mean(name: str, robots: dict) -> str:
 
 
 def _table() -> dict:
-    from example_robot_data.robots_loader import ROBOTS
+    from example_robot_data.robots_loader import ROBOTS  # pyright: ignore[reportMissingImports]
 
     return {n: c for n, c in ROBOTS.items() if c.urdf_filename}
 
 
 def _collection() -> Path:
-    from example_robot_data.robots_loader import getModelPath
+    from example_robot_data.robots_loader import getModelPath  # pyright: ignore[reportMissingImports]
 
     return Path(os.path.realpath(getModelPath("ur_description")))

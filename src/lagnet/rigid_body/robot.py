@@ -8,14 +8,16 @@ from pathlib import Path
 from typing import Any, final
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body import batches
 from lagnet.rigid_body.description import Description
+from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.mjcf import read_mjcf
 from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path
-from lagnet.rigid_body.urdf import about_origin, read_urdf
+from lagnet.rigid_body.urdf import read_urdf
+from lagnet.rigid_body.writing import mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.xml_files import read_xml
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
@@ -126,9 +128,9 @@ class Robot:
 
         The ten parameters of joint k's body are columns 10 k to 10 k + 9, about the origin of the joint's frame and in
         its axes: m [kg], m c_x, m c_y, m c_z [kg m], I_xx, I_xy, I_yy, I_xz, I_yz, I_zz [kg m²]. With `armature`,
-        inverse dynamics = regressor · parameters + armature a. A sample takes 80 · 10 dof² bytes: see `regressor_chunks`.
+        inverse dynamics = regressor · parameters + armature a. A sample takes 80 dof² bytes: see `regressor_chunks`.
         """
-        return batches.regressor(self._model, *self._batch(q=q, v=v, a=a), slice(None))
+        return batches.regressor(self._model, slice(None), *self._batch(q=q, v=v, a=a))
 
     def regressor_chunks(
         self, q: Trajectory, v: Trajectory, a: Trajectory, chunk: int = 4096
@@ -139,12 +141,12 @@ class Robot:
             raise ValueError(f"chunk is {chunk}, expected at least 1")
         for start in range(0, len(q), chunk):
             rows = slice(start, min(start + chunk, len(q)))
-            yield rows, batches.regressor(self._model, q[rows], v[rows], a[rows], slice(None))
+            yield rows, batches.regressor(self._model, slice(None), q[rows], v[rows], a[rows])
 
     def link_regressor(self, joint: int, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
         """Torque per unit of each inertial parameter of the body behind one joint, shape (n, dof, 10)."""
         k = self._joint(joint)
-        return batches.regressor(self._model, *self._batch(q=q, v=v, a=a), slice(10 * k, 10 * k + 10))
+        return batches.regressor(self._model, slice(10 * k, 10 * k + 10), *self._batch(q=q, v=v, a=a))
 
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """Holding torque per unit of each component of the gravity vector, shape (n, dof, 3), [N m s²/m]."""
@@ -159,7 +161,7 @@ class Robot:
         the origin of a joint's frame. It is -Jᵀ: a hand that is pushed down (F_z < 0) asks for more lift.
         """
         frame = self._tip_frame() if joint == -1 else self._model.getFrameId(self.joints[self._joint(joint)])
-        return -batches.tip_jacobian(self._model, *self._batch(q=q), frame).transpose(0, 2, 1)
+        return -batches.tip_jacobian(self._model, frame, *self._batch(q=q)).transpose(0, 2, 1)
 
     def skeleton(self, q: JointVector) -> np.ndarray:
         """Points to draw the arm in one pose: base, origin of each joint, tip; shape (dof + 2, 3), [m]."""
@@ -208,8 +210,20 @@ class Robot:
         if com.shape != (3,) or inertia.shape != (3, 3):
             raise ValueError(f"com and inertia have shapes {com.shape}, {inertia.shape}, expected (3,), (3, 3)")
         parameters = self.inertial_parameters()
-        parameters[self._joint(joint)] += about_origin(mass, com, inertia)
+        parameters[self._joint(joint)] += parameters_of_body(mass, com, inertia)
         return self.with_inertial_parameters(parameters)
+
+    def write_urdf(self, path: str | Path) -> None:
+        """Writes the URDF the arm came from with its present inertials; joints, limits, names and shapes stay.
+
+        Raises:
+            RobotError: the arm has rotor inertias, which a URDF cannot hold.
+        """
+        write_text(Path(path), urdf_text(self._description))
+
+    def write_mjcf(self, path: str | Path) -> None:
+        """Writes the arm as plain MJCF: bodies, joints with limits, inertials, gravity."""
+        write_text(Path(path), mjcf_text(self._description))
 
     def _batch(self, **arrays: np.ndarray) -> list[np.ndarray]:
         """Arrays as float64 of one shape (n, dof)."""
@@ -236,7 +250,7 @@ class Robot:
         return data
 
     def _tip_frame(self) -> int:
-        """The frame of the last joint's body that lies farthest from the joint: a flange or tool frame where there is one."""
+        """The frame on the last joint's body that lies farthest from it: a flange or tool frame where there is one."""
         last = self._model.njoints - 1
         own = [i for i, frame in enumerate(self._model.frames) if frame.parentJoint == last]
         return max(own, key=lambda i: round(float(np.linalg.norm(self._model.frames[i].placement.translation)), 9))
@@ -261,7 +275,7 @@ def _with_gravity(model: pin.Model, gravity: np.ndarray) -> pin.Model:
 
 
 def _parameters(body: pin.Inertia) -> np.ndarray:
-    return about_origin(body.mass, np.array(body.lever), np.array(body.inertia))
+    return parameters_of_body(body.mass, np.array(body.lever), np.array(body.inertia))
 
 
 def _inertia(row: np.ndarray) -> pin.Inertia:
@@ -270,11 +284,8 @@ def _inertia(row: np.ndarray) -> pin.Inertia:
     Raises:
         ValueError: first moment without mass, which no body has and Pinocchio cannot hold.
     """
-    mass, moment = float(row[0]), row[1:4]
-    tensor = np.empty((3, 3))
-    tensor[np.tril_indices(3)] = row[4:]
-    tensor.T[np.tril_indices(3)] = row[4:]
-    if mass == 0.0 and moment.any():
-        raise ValueError("a body of zero mass has a first moment; give it a mass")
-    com = moment / mass if mass else np.zeros(3)
-    return pin.Inertia(mass, com, tensor - mass * (com @ com * np.eye(3) - np.outer(com, com)))
+    if row[0] == 0.0:
+        if row[1:4].any():
+            raise ValueError("a body of zero mass has a first moment; give it a mass")
+        return pin.Inertia(0.0, np.zeros(3), tensor_about_origin(row))
+    return pin.Inertia(float(row[0]), row[1:4] / row[0], tensor_about_com(row))

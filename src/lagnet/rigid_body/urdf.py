@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import Description, moving_bodies
+from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
+from lagnet.rigid_body.inertia import parameters_of_body
+from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.urdf_checks import check_tree, numbers
 from lagnet.rigid_body.xml_files import XmlFile
 
@@ -37,7 +38,7 @@ def read_urdf(file: XmlFile, kind: str = "urdf", source: str | None = None, held
     types, positions = normalise(root, file.source, held, warnings)
     model = _build(root, file.source)
     joint_types = tuple(types[name] for name in model.names[1:])
-    warnings += _mass_warnings(model, file.source)
+    warnings += mass_warnings(model, file.source)
     links = moving_bodies(model)
     inertials = tuple(_link_inertials(root))
     return Description(
@@ -68,15 +69,14 @@ def normalise(
     _strip(root)
     joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
     positions = _held_positions(joints, set(held), warnings)
-    for name, position in positions.items():
-        _hold(joints[name], position, where)
+    hold_joints(root, positions, where)
     types = {}
     for name, joint in joints.items():
         kind = joint.get("type", "")
         if kind in MOVING:
             types[name] = kind
             _prepare(joint, where, warnings)
-    warnings += _leave_out_friction(joints.values())
+    warnings += _leave_out_friction(joints)
     if not types:
         raise RobotError("has no moving joint", where=where)
     return types, positions
@@ -100,11 +100,19 @@ def _held_positions(joints: dict[str, Element], held: set[str], warnings: list[s
         if mimic is not None and name not in positions and joint.get("type") in MOVING:
             positions[name] = float(mimic.get("offset", "0"))
             warnings.append(
-                f"joint {name} mimics {mimic.get('joint')}: held at {positions[name]:g}, its body welded to the link before"
+                f"joint {name} mimics {mimic.get('joint')}: held at {positions[name]:g} on the link before it"
             )
+    return positions
+
+
+def hold_joints(root: Element, positions: Mapping[str, float], where: str) -> None:
+    """Turns joints of a URDF into fixed ones at the given positions."""
+    for joint in root.findall("joint"):
+        mimic, name = joint.find("mimic"), joint.get("name", "")
         if mimic is not None:
             joint.remove(mimic)
-    return positions
+        if name in positions:
+            _hold(joint, positions[name], where)
 
 
 def _hold(joint: Element, position: float, where: str) -> None:
@@ -170,19 +178,18 @@ def _prepare(joint: Element, where: str, warnings: list[str]) -> None:
         joint.set("type", "revolute")
 
 
-def _leave_out_friction(joints: Iterable[Element]) -> list[str]:
+def _leave_out_friction(joints: Mapping[str, Element]) -> list[str]:
     """Takes declared damping and friction off: a nominal model of rigid bodies must not explain them away."""
     found = []
-    for joint in joints:
+    for name, joint in joints.items():
         dynamics = joint.find("dynamics")
         if dynamics is None:
             continue
-        if any(float(dynamics.get(key, "0")) for key in ("damping", "friction")):
-            found.append(joint.get("name", ""))
+        declared = any(float(dynamics.get(key, "0")) for key in ("damping", "friction"))
+        if declared and joint.get("type") != "fixed":
+            found.append(name)
         joint.remove(dynamics)
-    if not found:
-        return []
-    return [f"damping or friction declared on {', '.join(found)} is not part of the rigid bodies and is left out"]
+    return friction_warning(found)
 
 
 def _build(root: Element, where: str) -> pin.Model:
@@ -204,36 +211,12 @@ def _link_inertials(root: Element) -> Iterable[tuple[str, np.ndarray]]:
 def inertial_parameters(inertial: Element, where: str) -> np.ndarray:
     """Ten inertial parameters of an `inertial` element about the link's origin, in the link's frame."""
     mass, tensor = inertial.find("mass"), inertial.find("inertia")
-    assert mass is not None and tensor is not None  # checked before
+    assert mass is not None, "checked before"
+    assert tensor is not None, "checked before"
     m = float(mass.get("value", "nan"))
     i = {k: float(tensor.get(k, "0")) for k in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
     about_com = np.array(
         [[i["ixx"], i["ixy"], i["ixz"]], [i["ixy"], i["iyy"], i["iyz"]], [i["ixz"], i["iyz"], i["izz"]]]
     )
     placement = origin_of(inertial, where)
-    return about_origin(m, placement.translation, placement.rotation @ about_com @ placement.rotation.T)
-
-
-def about_origin(mass: float, com: np.ndarray, inertia_about_com: np.ndarray) -> np.ndarray:
-    """(m, mc, I about the frame's origin) in the order of the regressor; holds for negative masses as well."""
-    tensor = inertia_about_com + mass * (com @ com * np.eye(3) - np.outer(com, com))
-    return np.array([mass, *(mass * com), *tensor[np.tril_indices(3)]])
-
-
-def _mass_warnings(model: pin.Model, where: str) -> list[str]:
-    """Moving bodies that no real arm has; those that make the mass matrix singular are errors."""
-    warnings = []
-    subtree = np.array([body.mass for body in model.inertias])
-    for i in range(model.njoints - 1, 0, -1):
-        subtree[model.parents[i]] += subtree[i]
-    for i in range(1, model.njoints):
-        if subtree[i] == 0 and not any(model.inertias[j].inertia.any() for j in model.subtrees[i]):
-            raise RobotError(
-                f"nothing behind joint {model.names[i]} has mass",
-                where=where,
-                next_step=f"give link {moving_bodies(model)[i - 1]} an inertial, or make the joint fixed",
-            )
-        mass = model.inertias[i].mass
-        if mass <= 0 or not math.isfinite(mass):
-            warnings.append(f"the body behind joint {model.names[i]} has a mass of {mass:g} kg")
-    return warnings
+    return parameters_of_body(m, placement.translation, placement.rotation @ about_com @ placement.rotation.T)

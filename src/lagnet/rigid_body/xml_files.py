@@ -32,7 +32,7 @@ def read_xml(path: Path) -> XmlFile:
     """Reads the file and refuses what no robot description needs.
 
     Raises:
-        RobotError: unreadable, too large, not XML, or with a document type (the door to entity expansion and other files).
+        RobotError: unreadable, too large, not XML, or with a document type (entities, other files).
     """
     try:
         if path.is_dir():
