@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 Trace = dict[str, Any]
+SAME_X = "same x"  # as `x` of a trace: the x of the trace before it, sent but once
 
 
 @dataclass(frozen=True)

@@ -27,18 +27,27 @@ from lagnet.reports.wording import FILTERS
 
 @dataclass(frozen=True)
 class Section:
-    """One part of a page: its anchor, its heading (none if empty), its rendered body and the plots placed in it."""
+    """One part of a page.
+
+    Args:
+        key: its anchor.
+        title: its heading; none if empty.
+        body: its rendered content.
+        figures: the plots placed in it.
+        half: whether it may share a row with its neighbour on a wide screen.
+    """
 
     key: str
     title: str
     body: Markup
     figures: Sequence[Figure] = ()
+    half: bool = False
 
 
-def section(key: str, title: str, figures: Sequence[Figure] = (), **context: Any) -> Section:
+def section(key: str, title: str, figures: Sequence[Figure] = (), half: bool = False, **context: Any) -> Section:
     """Render the template `KEY.html.j2` of a section; its plots are at hand there by their keys as `figures`."""
     context = {**context, "figures": {figure.key: figure for figure in figures}}
-    return Section(key, title, render(f"{key}.html.j2", **context), figures)
+    return Section(key, title, render(f"{key}.html.j2", **context), figures, half)
 
 
 def render(template: str, **context: Any) -> Markup:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
+
+PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "lugre": "LuGre", "dahl": "Dahl"}
 
 
 def effect_words(name: str) -> str:
-    """A name of the catalogue in words: viscous_friction becomes viscous friction."""
-    return name.replace("_", " ")
+    """A name of the catalogue in words: stribeck_friction becomes Stribeck friction."""
+    return " ".join(PROPER.get(word, word) for word in name.split("_"))
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -53,6 +56,28 @@ def listed(words: list[str] | tuple[str, ...]) -> str:
     return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
+def counted(count: int, noun: str, plural: str | None = None) -> str:
+    """A number with its noun: 1 joint, 4 joints."""
+    return f"{count} {noun if count == 1 else plural or noun + 's'}"
+
+
+def unit_words(unit: str) -> str:
+    """A unit as printed behind a value; nothing for pure numbers."""
+    return "" if unit in ("", "-", "–", "1") else unit
+
+
+def wrapped(name: str, width: int) -> list[str]:
+    """A long name in lines of at most so many characters, broken behind _ - / or a space where it can be."""
+    lines = [""]
+    for piece in re.findall(r"[^_\-/ ]*[_\-/ ]|[^_\-/ ]+", name):
+        if lines[-1] and len(lines[-1]) + len(piece.rstrip()) > width:
+            lines.append("")
+        lines[-1] += piece
+        while len(lines[-1].rstrip()) > width:
+            lines[-1:] = [lines[-1][:width], lines[-1][width:]]
+    return [line.rstrip(" ") for line in lines]
+
+
 def _digits(value: float, half: float) -> int:
     size = max(abs(value), half)
     return min(max(2 + math.floor(math.log10(size)) - math.floor(math.log10(half)), 2), 6)
@@ -71,4 +96,6 @@ FILTERS = {
     "number": number,
     "percent": percent,
     "listed": listed,
+    "counted": counted,
+    "unit_words": unit_words,
 }

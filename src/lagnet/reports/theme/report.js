@@ -4,8 +4,7 @@
   const figures = JSON.parse(document.getElementById("figures").textContent);
   const root = document.documentElement;
   const config = {
-    responsive: true, displaylogo: false, typesetMath: false, plotlyServerURL: "",
-    modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+    responsive: true, displayModeBar: false, typesetMath: false, plotlyServerURL: "",
   };
 
   function colour(name) {
@@ -21,6 +20,12 @@
     if (Array.isArray(node)) return node.map(coloured);
     if (node === null || typeof node !== "object") return node;
     return Object.fromEntries(Object.entries(node).map(([key, value]) => [key, coloured(value)]));
+  }
+
+  // A trace that shares the x of the one before it says so instead of holding it again.
+  function completed(traces) {
+    traces.forEach((trace, index) => { if (trace.x === "same x") trace.x = traces[index - 1].x; });
+    return traces;
   }
 
   function merged(base, own) {
@@ -55,7 +60,7 @@
   function draw(place) {
     const figure = figures[place.dataset.figure];
     if (!figure || place.closest("[hidden]") || place.offsetWidth === 0) return;
-    const traces = coloured(figure.data);
+    const traces = completed(coloured(figure.data));
     if (place.dataset.drawn) Plotly.react(place, traces, layout(figure.layout), config);
     else Plotly.newPlot(place, traces, layout(figure.layout), config);
     place.dataset.drawn = "yes";

@@ -1,0 +1,64 @@
+"""The report of a diagnosis: one page that says in a minute where the arm differs from its model, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from lagnet.diagnosis.evidence import Evidence
+from lagnet.reports.findings import Findings
+from lagnet.reports.page import Section, write_page
+from lagnet.reports.sections import (
+    abstentions,
+    arm,
+    fit,
+    headline,
+    joints,
+    parameters,
+    provenance,
+    rivals,
+    unexplained,
+    where,
+)
+from lagnet.reports.wording import counted
+
+# In order of reading. A new section is one file beside these, with its template, and one line here.
+SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
+    headline.build,
+    arm.build,
+    fit.build,
+    joints.build,
+    where.build,
+    rivals.build,
+    unexplained.build,
+    abstentions.build,
+    parameters.build,
+    provenance.build,
+)
+
+
+def write_report(verdict: Mapping[str, Any], evidence: Evidence, path: str | Path) -> Path:
+    """Write the diagnosis as one self-contained HTML page.
+
+    Args:
+        verdict: valid under verdict.schema.json.
+        evidence: the arrays behind it; what is absent is left out.
+        path: the file to write; replaced in one step.
+
+    Returns:
+        The file that was written.
+    """
+    findings = Findings(verdict, evidence)
+    parts = [part for part in (build(findings) for build in SECTIONS) if part is not None]
+    return write_page(path, "Simulation against recordings", _subtitle(verdict), parts)
+
+
+def _subtitle(verdict: Mapping[str, Any]) -> str:
+    recordings = verdict["recordings"]
+    held_out = [recording for recording in recordings if recording["role"] == "holdout"]
+    seconds = sum(recording["duration_s"] for recording in recordings)
+    return (
+        f"{verdict['nominal']['source']} against {counted(len(recordings), 'recording')} "
+        f"({seconds:.0f} s, {len(held_out)} held out)"
+    )

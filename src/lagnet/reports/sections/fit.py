@@ -1,0 +1,77 @@
+"""How far the fit gets on recordings not used for it: before, after, and what noise alone would leave."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lagnet.reports.figures import Figure, Trace, axis, colour, names_axis, plain
+from lagnet.reports.findings import Findings
+from lagnet.reports.page import Section, section
+from lagnet.reports.wording import percent, wrapped
+
+KINDS = (
+    ("nmse_nominal", "nominal model", "nominal"),
+    ("nmse_named", "with the named physics", "corrected"),
+    ("nmse_named_and_residual_network", "with a residual network too", "law"),
+)
+SMALLEST = 1e-6  # a bar on a logarithmic axis cannot reach zero
+
+
+def build(findings: Findings) -> Section | None:
+    """Bars for each joint, best read from right to left: the shorter, the better."""
+    fits = findings.verdict["fit"]
+    if not fits:
+        return None
+    kinds = [kind for kind in KINDS if any(fit[kind[0]] is not None for fit in fits)]
+    figure = _figure(fits, kinds)
+    return section("fit", "Fit on held-out recordings", [figure], half=True, fits=fits, kinds=kinds)
+
+
+def _figure(fits: list[dict[str, Any]], kinds: list[tuple[str, str, str]]) -> Figure:
+    names = ["<br>".join(plain(line) for line in wrapped(fit["joint"], 16)) for fit in fits]
+    traces = [
+        {**_bars(names, [fit[key] for fit in fits], words, role), "legendrank": rank}
+        for rank, (key, words, role) in enumerate(kinds)
+    ]
+    traces.append(_floor(names, [fit["nmse_noise_floor"] for fit in fits]))
+    values = [fit[key] for fit in fits for key in (*(kind[0] for kind in kinds), "nmse_noise_floor")]
+    layout = {
+        "barmode": "group",
+        "bargap": 0.28,
+        "yaxis": names_axis(autorange="reversed"),
+        "xaxis": axis("torque error (nMSE), logarithmic", "–", **_range(values)),
+        "margin": {"t": 84},
+    }
+    lines = sum(max(len(wrapped(fit["joint"], 16)) * 16 + 8, 18 * len(kinds) + 14) for fit in fits)
+    return Figure("fit-bars", traces, "Held-out torque error of each joint before and after", layout, 170 + lines)
+
+
+def _bars(names: list[str], values: list[float | None], words: str, role: str) -> Trace:
+    return {
+        "type": "bar", "orientation": "h", "y": names, "name": words, "marker": {"color": colour(role)},
+        "x": [None if value is None else max(value, SMALLEST) for value in values],
+        "text": [percent(value) for value in values], "textposition": "inside", "insidetextanchor": "start",
+        "hovertemplate": "%{y}: %{text}", "textangle": 0,
+    }  # fmt: skip
+
+
+def _floor(names: list[str], values: list[float]) -> Trace:
+    return {
+        "type": "scatter", "mode": "markers", "y": names, "name": "noise floor",
+        "x": [max(value, SMALLEST) for value in values], "text": [percent(value) for value in values],
+        "marker": {"symbol": "line-ns", "size": 22, "line": {"width": 3, "color": colour("measured")}},
+        "hovertemplate": "%{y}: %{text}",
+    }  # fmt: skip
+
+
+def _range(values: list[float | None]) -> dict[str, Any]:
+    """A logarithmic axis on which the shortest bar still has room for its number."""
+    present = [math.log10(max(value, SMALLEST)) for value in values if value is not None]
+    high = max(max(present) + 0.1, 0.05)
+    low = min(present) - max(0.4 * (high - min(present)), 0.3)
+    ticks = list(range(math.ceil(low), math.floor(high) + 1))
+    return {
+        "type": "log", "range": [low, high], "tickvals": [10.0**tick for tick in ticks],
+        "ticktext": [f"{10.0 ** (tick + 2):g} %" if tick >= -4 else f"10<sup>{tick}</sup>" for tick in ticks],
+    }  # fmt: skip
