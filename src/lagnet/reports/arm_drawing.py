@@ -114,13 +114,16 @@ def _labelled(height, links, joints, axes, lines, scale_bar) -> Drawing:
 
 
 def _stacked(wanted: np.ndarray, heights: np.ndarray) -> np.ndarray:
-    """Centres of labels near the wanted heights, from the top down, none over another, none above the picture."""
+    """Centres of labels near the wanted heights, none over another, none above the picture."""
     centres, bottom = [], 8.0
     for want, height in zip(wanted, heights, strict=True):
         centre = max(want, bottom + height / 2)
         centres.append(centre)
         bottom = centre + height / 2
-    return np.array(centres)
+    if not centres:
+        return np.zeros(0)
+    room_above = centres[0] - heights[0] / 2 - 8.0
+    return np.array(centres) - min(float(np.mean(centres - wanted)), room_above)
 
 
 def _label(words: tuple[str, ...], joint: np.ndarray, y: float, on_left: bool, links: np.ndarray) -> Label:

@@ -23,7 +23,9 @@ def torque_over_time(key: str, joint: JointEvidence, n_joints: int) -> Figure | 
     chosen = chosen_samples(series, series_budget(n_joints))
     time, starts, moved = end_to_end(series)
     x = packed(broken(time, series, chosen))
-    lines = (("measured", 2.2), ("nominal", 1.5), ("corrected", 1.5))
+    lines = [("measured", 4.0), ("nominal", 1.5), ("corrected", 1.5)]
+    if np.array_equal(series.nominal, series.corrected):
+        lines.pop()  # nothing was named on this joint
     traces = [
         _line(SAME_X if index else x, packed(broken(np.asarray(getattr(series, role)), series, chosen)), role, width)
         for index, (role, width) in enumerate(lines)
@@ -47,17 +49,17 @@ def residual_by_velocity(key: str, joint: JointEvidence, n_joints: int) -> Figur
         return None
     chosen = scattered(len(cloud.velocity), cloud_budget(n_joints))
     x = packed(np.asarray(cloud.velocity)[chosen])
-    traces = [
-        _dots(x, packed(np.asarray(cloud.nominal)[chosen]), "nominal"),
-        _dots(SAME_X, packed(np.asarray(cloud.corrected)[chosen]), "corrected"),
-    ]
+    traces = [_dots(x, packed(np.asarray(cloud.nominal)[chosen]), "nominal")]
+    if not np.array_equal(cloud.nominal, cloud.corrected):
+        traces.append(_dots(SAME_X, packed(np.asarray(cloud.corrected)[chosen]), "corrected"))
     if joint.law is not None:
         traces.append(_law(joint))
     layout = {
         "xaxis": axis("velocity", joint.velocity_unit),
-        "yaxis": axis(f"measured − model {_torque(joint)}", joint.unit),
+        "yaxis": axis(f"residual {_torque(joint)}", joint.unit),
         "shapes": _noise_band(joint.noise_rms),
         "margin": {"t": 40},
+        "showlegend": True,
         "hovermode": "closest",
     }
     return Figure(key, traces, f"Residual torque of {joint.joint} against its velocity", layout)
@@ -68,7 +70,8 @@ def _window(series: HeldOutSeries, time: np.ndarray) -> dict[str, Any]:
     if time[-1] - time[0] <= WINDOW_SHOWN_WHOLE:
         return {}
     edges = np.arange(time[0], time[-1] - WINDOW, WINDOW / 4)
-    power = np.append(0.0, np.cumsum((np.asarray(series.measured) - np.asarray(series.nominal)) ** 2))
+    residual = np.nan_to_num(np.asarray(series.measured) - np.asarray(series.nominal))
+    power = np.append(0.0, np.cumsum(residual**2))
     inside = power[np.searchsorted(time, edges + WINDOW)] - power[np.searchsorted(time, edges)]
     start = float(edges[np.argmax(inside)])
     return {"range": [start, start + WINDOW], "rangeslider": {"thickness": 0.14, "bgcolor": colour("panel")}}
@@ -104,7 +107,7 @@ def _law(joint: JointEvidence) -> Trace:
 
 
 def _noise_band(noise_rms: float | None) -> list[dict[str, Any]]:
-    if not noise_rms:
+    if noise_rms is None or not np.isfinite(noise_rms):
         return []
     return [
         {

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 import re
 
+from markupsafe import Markup, escape
+
+LONGEST_WHOLE_NAME = 24
 PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "lugre": "LuGre", "dahl": "Dahl"}
 
 
@@ -61,6 +64,13 @@ def counted(count: int, noun: str, plural: str | None = None) -> str:
     return f"{count} {noun if count == 1 else plural or noun + 's'}"
 
 
+def breakable(name: str) -> Markup:
+    """A long name that may break behind its underscores; short ones stay whole, so that they can be searched for."""
+    if len(name) <= LONGEST_WHOLE_NAME:
+        return escape(name)
+    return Markup("<wbr>").join(re.findall(r"[^_]*_|[^_]+", name))
+
+
 def unit_words(unit: str) -> str:
     """A unit as printed behind a value; nothing for pure numbers."""
     return "" if unit in ("", "-", "–", "1") else unit
@@ -98,4 +108,5 @@ FILTERS = {
     "listed": listed,
     "counted": counted,
     "unit_words": unit_words,
+    "breakable": breakable,
 }

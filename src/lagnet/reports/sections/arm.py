@@ -20,11 +20,12 @@ def build(findings: Findings) -> Section:
     """The arm in one pose, or a column of joints where its geometry is not known."""
     lines = [_words(findings, joint) for joint in findings.joints]
     skeleton = findings.evidence.skeleton
-    fits = skeleton is not None and skeleton.points.shape == (len(lines) + 2, 3)
-    drawing = draw_arm(skeleton, lines) if fits else draw_chain(lines)
+    if skeleton is not None and skeleton.points.shape != (len(lines) + 2, 3):
+        skeleton = None  # not of this arm
+    drawing = draw_chain(lines) if skeleton is None else draw_arm(skeleton, lines)
     return section(
         "arm",
-        "Where it differs",
+        "Where it differs" if findings.differing else "The arm",
         half=True,
         drawing=drawing,
         joints=[_joint(findings, joint) for joint in findings.joints],
@@ -32,7 +33,7 @@ def build(findings: Findings) -> Section:
         width=WIDTH,
         margin=MARGIN,
         radius=RADIUS,
-        known=fits,
+        known=skeleton is not None,
     )
 
 

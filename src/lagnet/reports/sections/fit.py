@@ -24,6 +24,8 @@ def build(findings: Findings) -> Section | None:
     if not fits:
         return None
     kinds = [kind for kind in KINDS if any(fit[kind[0]] is not None for fit in fits)]
+    if not findings.effects:
+        kinds = [kind for kind in kinds if kind[0] != "nmse_named"]  # the same as the nominal model
     figure = _figure(fits, kinds)
     return section("fit", "Fit on held-out recordings", [figure], half=True, fits=fits, kinds=kinds)
 
@@ -60,7 +62,7 @@ def _floor(names: list[str], values: list[float]) -> Trace:
     return {
         "type": "scatter", "mode": "markers", "y": names, "name": "noise floor",
         "x": [max(value, SMALLEST) for value in values], "text": [percent(value) for value in values],
-        "marker": {"symbol": "line-ns", "size": 22, "line": {"width": 3, "color": colour("measured")}},
+        "marker": {"symbol": "line-ns", "size": 22, "line": {"width": 3, "color": colour("ink")}},
         "hovertemplate": "%{y}: %{text}",
     }  # fmt: skip
 

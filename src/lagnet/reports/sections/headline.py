@@ -38,20 +38,29 @@ def _sentences(findings: Findings) -> list[str]:
     if not findings.verdict["mismatch"]["found"]:
         which = "on its joint the torque error is not" if n == 1 else f"on none of its {n} joints is the torque error"
         return [f"The arm agrees with the model: {which} larger than sensor noise and differentiation explain."]
-    where = "its only joint" if n == 1 else f"{len(differing)} of {n} joints"
+    where = f"{len(differing)} of {n} joints" if len(differing) < n else "its joint" if n == 1 else f"all {n} joints"
     sentences = [f"The arm differs from the model on {where}."]
     if not findings.effects:
-        return [*sentences, "No physics of the catalogue explains the difference beyond doubt."]
+        return [*sentences, "No physics of the catalogue explains the difference beyond doubt.", *_unjudged(findings)]
     return [*sentences, _left_out(findings), _improvement(findings)]
 
 
+def _unjudged(findings: Findings) -> list[str]:
+    """The hypotheses that the recordings could not test, as the likeliest place of what is missing."""
+    names = dict.fromkeys(effect_words(entry["effect"]) for entry in findings.verdict["abstentions"])
+    return [f"These recordings cannot judge {listed(list(names))}."] if names else []
+
+
 def _left_out(findings: Findings) -> str:
-    """Effects with their values if there are few, else with the number of their joints."""
+    """Effects with their values if there are few, else gathered by the joints they share."""
     if len(findings.effects) <= 3:
-        parts = [f"{_name(effect)} on {place(effect['joint'])} ({_values(effect)})" for effect in findings.effects]
-    else:
-        parts = [f"{words} on {_on(effects)}" for words, effects in _by_name(findings).items()]
-    return f"Left out: {listed(parts)}."
+        parts = [f"{_name(e)} on {place(e['joint'])} ({', '.join(_values(e))})" for e in findings.effects]
+        return f"Left out: {listed(parts)}."
+    by_places: dict[tuple[str | None, ...], list[str]] = {}
+    for words, effects in _by_name(findings).items():
+        by_places.setdefault(tuple(effect["joint"] for effect in effects), []).append(words)
+    parts = [f"{listed(words)} on {_on(places, findings)}" for places, words in by_places.items()]
+    return f"Left out: {'; '.join(parts)}."
 
 
 def _improvement(findings: Findings) -> str:
@@ -66,23 +75,35 @@ def _improvement(findings: Findings) -> str:
 
 
 def _tiles(findings: Findings) -> list[dict[str, str]]:
+    """Four figures to remember."""
     named = sum(effect["status"] == "named" for effect in findings.effects)
     tied = len(findings.effects) - named
-    remaining = _remaining(findings)
+    remaining = len(_remaining(findings))
+    keep = "joint keeps" if remaining == 1 else "joints keep"
     tiles = [
-        {"value": f"{len(findings.differing)} of {len(findings.joints)}", "words": "joints differ from the model"},
-        {"value": str(named), "words": "effects named" + (f", {tied} tied with rivals" if tied else "")},
+        _tile(f"{len(findings.differing)} of {len(findings.joints)}", "joints differ from the model"),
+        _tile(str(named), f"effect{'' if named == 1 else 's'} named" + (f", {tied} tied with rivals" if tied else "")),
+        _tile(str(remaining), f"{keep} something unexplained"),
     ]
-    if findings.verdict["fit"]:
-        best = max(findings.verdict["fit"], key=lambda fit: fit["nmse_nominal"] - fit["nmse_named"])
-        tiles.append(
-            {
-                "value": f"{percent(best['nmse_nominal'])} → {percent(best['nmse_named'])}",
-                "words": f"held-out torque error of {best['joint']}",
-            }
-        )
-    words = "joints keep something unexplained" if len(remaining) != 1 else "joint keeps something unexplained"
-    return [*tiles, {"value": str(len(remaining)), "words": words}]
+    return tiles[:2] + _gain(findings) + tiles[2:]
+
+
+def _tile(value: str, words: str, joint: str = "", rest: str = "") -> dict[str, str]:
+    return {"value": value, "words": words, "joint": joint, "rest": rest}
+
+
+def _gain(findings: Findings) -> list[dict[str, str]]:
+    """The joint whose held-out error falls most; where nothing was named, the one with the largest error."""
+    fits = findings.verdict["fit"]
+    if not fits:
+        return []
+    best = max(fits, key=lambda fit: fit["nmse_nominal"] - fit["nmse_named"])
+    if findings.effects:
+        change = f"{percent(best['nmse_nominal'])} → {percent(best['nmse_named'])}"
+        return [_tile(change, "held-out torque error of", best["joint"])]
+    worst = max(fits, key=lambda fit: fit["nmse_nominal"])
+    rest = f", the largest; noise alone would leave {percent(worst['nmse_noise_floor'])}"
+    return [_tile(percent(worst["nmse_nominal"]), "held-out torque error of", worst["joint"], rest)]
 
 
 def _causes(findings: Findings) -> list[dict[str, Any]]:
@@ -106,12 +127,13 @@ def _name(effect: dict[str, Any]) -> str:
     return " or ".join(effect_words(name) for name in (effect["effect"], *effect["tied_with"]))
 
 
-def _on(effects: list[dict[str, Any]]) -> str:
-    joints = [effect["joint"] for effect in effects]
-    return place(joints[0]) if len(joints) == 1 else counted(len(joints), "joint")
+def _on(places: tuple[str | None, ...], findings: Findings) -> str:
+    if len(places) > 2 and sorted(map(str, places)) == sorted(findings.differing):
+        return "each of these"
+    return listed([place(joint) for joint in places]) if len(places) < 3 else counted(len(places), "joint")
 
 
-def _values(effect: dict[str, Any]) -> str:
+def _values(effect: dict[str, Any]) -> list[str]:
     parameters = effect["parameters"]
     alone = len(parameters) == 1
     words = [
@@ -121,7 +143,7 @@ def _values(effect: dict[str, Any]) -> str:
     interval = effect.get("interval_s")
     if interval:
         words.append(f"from {interval[0]:.4g} s to {interval[-1]:.4g} s")
-    return ", ".join(words) + (" …" if len(parameters) > SHOWN_PARAMETERS else "")
+    return [*words, "…"] if len(parameters) > SHOWN_PARAMETERS else words
 
 
 def _remaining(findings: Findings) -> list[str]:

@@ -19,6 +19,7 @@ def build(findings: Findings) -> Section:
         "Joint by joint, on held-out recordings",
         figures,
         panels=panels,
+        any_effects=bool(findings.effects),
         first=_most_telling(findings),
         bandwidth=findings.verdict["conditioning"]["bandwidth_hz"],
     )

@@ -54,7 +54,7 @@ def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
     zero = {"type": "line", "x0": 0, "x1": 0, "yref": "paper", "y0": 0, "y1": 1}
     layout = {
         "yaxis": names_axis(autorange="reversed", categoryorder="array", categoryarray=labels),
-        "xaxis": axis("log10 odds over the rival, compressed", "–", **_compressed_axis(reach)),
+        "xaxis": axis("log10 odds", "–", **_compressed_axis(reach)),
         "shapes": [{**zero, "line": {"color": colour("ink"), "width": 2}}],
         "bargap": 0.3,
         "margin": {"t": 40},
@@ -64,7 +64,7 @@ def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
 
 
 def _words(contest: Contest, rival: str, _: float) -> list[str]:
-    effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 34)
+    effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 24)
     return [*effect, f"over {effect_words(rival)}"]
 
 
@@ -106,5 +106,5 @@ def _compressed_axis(odds: list[float]) -> dict[str, Any]:
     ticks = [t for t in TICKS if low <= _compressed(t) <= high]
     return {
         "range": [low, high], "tickvals": [_compressed(tick) for tick in ticks],
-        "ticktext": [number(tick, 4) for tick in ticks], "zeroline": False,
+        "ticktext": [f"{tick:d}".replace("-", "−") for tick in ticks], "zeroline": False,
     }  # fmt: skip
