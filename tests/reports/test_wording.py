@@ -79,9 +79,4 @@ def test_breakable_names_lose_nothing(name):
 def test_lists_and_names():
     assert [listed([]), listed(["a"]), listed(["a", "b"])] == ["", "a", "a and b"]
     assert listed(["a", "b", "c"]) == "a, b and c"
-        "",
-        "a",
-        "a and b",
-        "a, b and c",
-    ]
     assert effect_words("stribeck_friction") == "Stribeck friction"
