@@ -115,4 +115,5 @@ def _told(error: Exception) -> str:
 
 
 def _local_copy(target: Path) -> str:
-    return f"put {target.parent.name}/{target.name} in a folder and name it in LAGNET_DATA_DIR"
+    parts = target.parts[-3:] if target.parent.name == "raw" else target.parts[-2:]
+    return f"put {'/'.join(parts)} in a folder and name it in LAGNET_DATA_DIR"

@@ -143,12 +143,13 @@ def _refuse_other_joint_count(header: Header, joints: tuple[str, ...]) -> None:
         return
     if all(f"q_{joint}" in header.names for joint in joints):
         return
-    numbers = {int(m[2]) for name in header.names if (m := NUMBERED.fullmatch(name)) and m[1] == "q"}
-    if numbers and len(numbers) != len(joints):
+    numbers = [int(match[2]) for name in header.names if (match := NUMBERED.fullmatch(name))]
+    count = max(numbers, default=-1) + 1
+    if count and count != len(joints):
         listed = ", ".join(joints[:8]) + (", …" if len(joints) > 8 else "")
         raise header.error(
-            f"has {len(numbers)} position columns (q_{min(numbers)} … q_{max(numbers)}), the robot has"
-            f" {len(joints)} joint{'s' * (len(joints) != 1)} ({listed})",
+            f"has columns of {count} joint{'s' * (count != 1)} ({_example('q', ('',) * count)}), the robot has"
+            f" {len(joints)} ({listed})",
             "give the recording of this robot, or map the columns of its joints with --columns",
         )
 

@@ -252,4 +252,6 @@ class _Assembly:
         short = np.flatnonzero(np.bincount(index, minlength=len(names)) < SHORT_MOTION)
         if not short.size:
             return ()
-        return (f"{short.size} trajectories have fewer than {SHORT_MOTION} samples, the first is {names[short[0]]}",)
+        have = "trajectory has" if short.size == 1 else "trajectories have"
+        listed = ", ".join(names[k] for k in short[:5]) + (", …" if short.size > 5 else "")
+        return (f"{short.size} {have} fewer than {SHORT_MOTION} samples: {listed}",)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import pyarrow as pa
 
@@ -31,7 +32,7 @@ def read_cell_by_cell(
     cut_off = text[-1:] not in (b"\n", b"\r")
     columns: list[list[float]] = [[] for _ in spots]
     labels: list[str] = []
-    for line, cells, last in _rows(text, dialect):
+    for line, cells, last in _rows(text, dialect, where):
         if not cells:
             cells = [""] * len(dialect.names)
         if len(cells) != len(dialect.names):
@@ -52,12 +53,21 @@ def read_cell_by_cell(
     return pa.table(arrays)
 
 
-def _rows(text: bytes, dialect: Dialect) -> Iterator[tuple[int, list[str], bool]]:
+def _cells(reader: Any, where: str) -> Iterator[list[str]]:
+    try:
+        yield from reader
+    except csv.Error as error:
+        raise RecordingError(
+            f"line {reader.line_num}: {error}", where=where, next_step="save it as plain CSV"
+        ) from None
+
+
+def _rows(text: bytes, dialect: Dialect, where: str) -> Iterator[tuple[int, list[str], bool]]:
     """Line number, cells, and whether it is the file's last line."""
     stream = io.TextIOWrapper(io.BytesIO(text), encoding="utf-8", errors="replace", newline="")
     reader = csv.reader(stream, delimiter=dialect.separator)
     held: tuple[int, list[str]] | None = None
-    for cells in reader:
+    for cells in _cells(reader, where):
         if reader.line_num <= dialect.header_lines:
             continue
         if held is not None:

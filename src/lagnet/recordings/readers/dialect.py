@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from lagnet.errors import RecordingError
 
 NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*")
-LONGEST_HEADER = 1024**2  # bytes; a header line beyond it is not a table of joint signals
+LONGEST_HEADER = 64 * 1024  # bytes; a header line beyond it is not a table of joint signals
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,8 @@ def sniff(data: bytes, where: str) -> tuple[Dialect, bytes]:
     if not header:
         raise RecordingError("the file is empty", where=where, next_step="record again or give another file")
     body_start = _line_end(text, skipped)
+    if len(header) >= LONGEST_HEADER:
+        raise RecordingError("is not a table: its first line does not end", where=where, next_step="save it as CSV")
     separator = _separator(header)
     cells = tuple(cell.strip() for cell in next(csv.reader([header], delimiter=separator, skipinitialspace=True)))
     has_header = not all(NUMBER.fullmatch(cell) or not cell for cell in cells)
