@@ -61,8 +61,10 @@
     const figure = figures[place.dataset.figure];
     if (!figure || place.closest("[hidden]") || place.offsetWidth === 0) return;
     const traces = completed(coloured(figure.data));
-    if (place.dataset.drawn) Plotly.react(place, traces, layout(figure.layout), config);
-    else Plotly.newPlot(place, traces, layout(figure.layout), config);
+    const form = layout(figure.layout);
+    if (root.dataset.print) form.width = place.offsetWidth;
+    if (place.dataset.drawn) Plotly.react(place, traces, form, config);
+    else Plotly.newPlot(place, traces, form, config);
     place.dataset.drawn = "yes";
   }
 
