@@ -1,0 +1,1 @@
+"""Numbered studies of what lagnet claims; not part of the package."""

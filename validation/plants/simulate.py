@@ -1,0 +1,142 @@
+"""Run a plant: closed loop, forward dynamics in PyBullet, recordings as CSV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from validation.plants.body import Body, BodySettings, Payload, joint_limits, joint_names
+from validation.plants.drive import Drive, DrySurface
+from validation.plants.motions import MotionSettings, Reference, reference
+from validation.plants.sensors import Sensors
+from validation.plants.sizes import scale_of
+from validation.plants.spec import Hidden, PlantSpec
+
+FIT_SHAPES = ("waypoints", "fourier", "sweeps")
+HOLDOUT_SHAPE = "fourier"
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """The parts of the true arm that a spec asks for."""
+
+    body: BodySettings
+    drive: Drive
+    sensors: Sensors
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One true run at the plant's step: q, v and motor torque at the same instants, shape (n, dof)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    tau: np.ndarray
+    step: float
+
+
+def build(spec: PlantSpec) -> Truth:
+    """The true arm of a spec."""
+    names = joint_names(spec.robot)
+    truth = Truth(
+        BodySettings(),
+        Drive.ideal(len(names)),
+        Sensors.ideal(len(names), noise=spec.noise, encoder_bits=spec.encoder_bits, velocity=spec.velocity),
+    )
+    for hidden in spec.hidden:
+        truth = _with(truth, hidden, -1 if hidden.joint is None else names.index(hidden.joint))
+    return truth
+
+
+def _set(array: np.ndarray, joint: int, value: float) -> np.ndarray:
+    changed = array.copy()
+    changed[joint] = value
+    return changed
+
+
+def _with(truth: Truth, hidden: Hidden, j: int) -> Truth:
+    x, body, drive, sensors = hidden.values, truth.body, truth.drive, truth.sensors
+    match hidden.effect:
+        case "viscous_friction":
+            drive = replace(drive, damping=_set(drive.damping, j, x["Fv"]))
+        case "quadratic_drag":
+            drive = replace(drive, drag=_set(drive.drag, j, x["Fd"]))
+        case "rotor_inertia":
+            drive = replace(drive, armature=_set(drive.armature, j, x["Ia"]))
+        case "joint_spring":
+            drive = replace(drive, stiffness=_set(drive.stiffness, j, x["k"]), rest=_set(drive.rest, j, x["q0"]))
+        case "coulomb_friction":
+            drive = replace(drive, surfaces=(*drive.surfaces, DrySurface(j, x["Fc"], x["Fc"])))
+        case "asymmetric_friction":
+            drive = replace(drive, surfaces=(*drive.surfaces, DrySurface(j, x["Fc_plus"], x["Fc_minus"])))
+        case "stribeck_friction":
+            surface = DrySurface(j, x["Fc"], x["Fc"], x["Fs"], x["vs"])
+            drive = replace(drive, surfaces=(*drive.surfaces, surface))
+        case "payload":
+            body = replace(body, payload=Payload(x["m"], (x["cx"], x["cy"], x["cz"]), x["radius"]))
+        case "gravity_tilt":
+            body = replace(body, tilt=(x["theta_1"], x["theta_2"]))
+        case "torque_gain":
+            sensors = replace(sensors, gain=_set(sensors.gain, j, x["g"]))
+        case "torque_offset":
+            sensors = replace(sensors, offset=_set(sensors.offset, j, x["b"]))
+        case "time_delay":
+            sensors = replace(sensors, delay=_set(sensors.delay, j, x["T"]))
+        case other:
+            raise ValueError(f"no plant physics for {other}")
+    return Truth(body, drive, sensors)
+
+
+def run(truth: Truth, robot: str, wanted: Reference) -> Run:
+    """Track a reference by computed torque of the nominal bodies."""
+    step = float(wanted.time[1] - wanted.time[0])
+    nominal, plant = Body(robot, step=step), Body(robot, truth.body, step=step)
+    omega = _bandwidth(robot, step)
+    n, dof = wanted.q.shape
+    seen = np.empty((3, n, dof))
+    plant.put(wanted.q[0], wanted.v[0] - step / 2 * wanted.a[1])
+    a = wanted.a[1]
+    for k in range(n):
+        q, v = plant.state()
+        v_mid = v + step / 2 * a  # the engine's speed lags its position by half a step
+        pull = omega**2 * (wanted.q[k] - q) + 2 * omega * (wanted.v[k] - v_mid)
+        tau = nominal.bias(q, v_mid) + nominal.inertia(q) @ (wanted.a[k] + pull)
+        h = plant.bias(q, v_mid)
+        links, a = truth.drive.transmit(tau, q, v, v_mid, plant.inertia(q), h, step)
+        plant.push(links + plant.bias(q, v) - h)
+        seen[:, k] = q, v + step / 2 * a, tau
+    nominal.close()
+    plant.close()
+    return Run(*seen, step)
+
+
+def _bandwidth(robot: str, step: float) -> np.ndarray:
+    """Feedback bandwidth [rad/s]: a joint's typical torque moves it by a hundredth of a radian."""
+    scale = scale_of(robot)
+    return np.clip(np.sqrt(scale.torque / (0.01 * scale.inertia)), 40.0, 0.15 / step)
+
+
+def simulate_plant(spec: PlantSpec, folder: Path) -> None:
+    """Write three recordings to fit and one to hold out into `folder`; the truth is not among them."""
+    truth = build(spec)
+    folder.mkdir(parents=True, exist_ok=True)
+    names = [f"fit_{i}" for i in range(len(FIT_SHAPES))] + ["holdout"]
+    for index, (name, shape) in enumerate(zip(names, (*FIT_SHAPES, HOLDOUT_SHAPE), strict=True)):
+        rng = np.random.default_rng([spec.seed, index])
+        settings = MotionSettings(spec.duration, spec.step_rate, speed_share=spec.speed_share)
+        true_run = run(truth, spec.robot, reference(shape, joint_limits(spec.robot), settings, rng))
+        every = round(spec.step_rate / spec.rate)
+        columns = truth.sensors.record(true_run.q, true_run.v, true_run.tau, true_run.step, every, rng)
+        write_csv(folder / f"{name}.csv", columns)
+
+
+def write_csv(path: Path, columns: dict[str, np.ndarray]) -> None:
+    """A recording file with the column names of the recording contract."""
+    header, data = ["time"], [columns["time"][:, None]]
+    for name in ("q", "v", "tau"):
+        if name in columns:
+            header += [f"{name}_{i}" for i in range(columns[name].shape[1])]
+            data.append(columns[name])
+    np.savetxt(path, np.hstack(data), fmt="%.9g", delimiter=",", header=",".join(header), comments="")
