@@ -1,10 +1,9 @@
-"""Deep Lagrangian network, structured: H(q) = U(q) U(q)ᵀ and V(q) from two networks.
+"""Structured deep Lagrangian network whose two networks follow the chain of joints.
 
-Two facts of every serial arm are built in, and neither is about one particular robot. Turning or sliding joint i carries
-everything outboard of it rigidly along, so entry (i, j) of the inertia depends only on joints outboard of min(i, j): U is
-upper triangular and its row i sees those joints alone. What hangs on joint k is a matter of joints 0 … k, so the potential is
-a sum of heads, each scaled by the torque of its joint: a wrist is not drowned by the shoulder. The last head sees all
-joints, so the sum can still be any function of q. Source: Lutter et al. 2019; Wu et al. 2024, eqs 5–7.
+Kinetic energy is T = ½ |L̂(q)ᵀ v|² + ½ Σ d_j v_j², so H = L̂ L̂ᵀ + diag(d) with d > 0: positive definite whatever the
+weights are. Row j of L̂ is what the velocity of joint j does to every body outboard of it, and depends on the joints
+between them alone; the potential is a sum of heads along the chain. This is DeLaN (Lutter et al. 2019; Wu et al. 2024,
+eqs 5–7) with a rectangular factor and with `ChainNetwork` in place of perceptrons; no kinematics are given.
 """
 
 from __future__ import annotations
@@ -18,79 +17,99 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.errors import ModelError
+from lagnet.models.chain_network import ChainNetwork, make_chain_network
 from lagnet.models.features import JointFeatures
 from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
-from lagnet.models.networks import OrderedNetwork, make_network
 from lagnet.models.scales import Scales
 
-COUPLINGS = ("serial", "general")
+LARGEST_RANK = 256
 
 
 @dataclass(frozen=True)
 class DelanSettings:
-    """Size and structure of the two networks.
+    """Size of the two chain networks.
 
     Args:
-        hidden: widths of the hidden layers, the same for inertia and potential.
-        activation: nonlinearity between layers; smooth, as torques need two derivatives.
-        coupling: "serial" for chains of bodies; "general" lets every inertia entry see every joint (coupled drives, loops).
-        floor: smallest diagonal of U in units of its scale, which keeps H positive definite.
+        rank: length of the state that carries velocity outwards; 6 would do for rigid bodies, more trains faster.
+        potential_rank: length of the state that carries gravity; 4 would do for rigid bodies.
+        floor: smallest diagonal inertia in units of torque over acceleration of its joint.
     """
 
-    hidden: tuple[int, ...] = (128, 128)
-    activation: str = "silu"
-    coupling: str = "serial"
-    floor: float = 1e-3
+    rank: int = 12
+    potential_rank: int = 8
+    floor: float = 1e-6
 
     def __post_init__(self) -> None:
-        if self.coupling not in COUPLINGS:
-            raise ModelError(f"coupling {self.coupling!r} is unknown", choices=COUPLINGS)
+        for name in ("rank", "potential_rank"):
+            if not 1 <= getattr(self, name) <= LARGEST_RANK:
+                raise ModelError(f"{name} is {getattr(self, name)}, expected 1 … {LARGEST_RANK}")
 
 
 class Delan(AbstractLagrangian):
-    """Kinetic energy ½ |U(q)ᵀ v|² and potential energy Σ_k s_k V_k(q), positive definite by construction."""
+    """Energies of an arm, each carried along the joints by a chain network.
 
-    inertia: OrderedNetwork
-    potential: OrderedNetwork
+    Args:
+        motion: carries velocity outwards.
+        axes: shape (dof, rank), what unit velocity of each joint adds to the state.
+        bodies: one (rank, rank) matrix a joint, root of the inertia that the state meets there.
+        drives: shape (dof,), inertia d_j of each joint by itself, before the softplus.
+        height: carries gravity outwards; start: its state at the base, shape (potential_rank,).
+        weights: shape (dof, potential_rank), what hangs on each joint.
+    """
+
+    motion: ChainNetwork
+    axes: Array
+    bodies: tuple[Array, ...]
+    drives: Array
+    height: ChainNetwork
+    start: Array
+    weights: Array
     features: JointFeatures = eqx.field(static=True)
     scales: Scales = eqx.field(static=True)
     settings: DelanSettings = eqx.field(static=True)
 
-    def factor(self, q: Vector) -> Matrix:
-        """Upper-triangular U(q) with H = U Uᵀ, rows scaled by the inertia that torque and acceleration suggest."""
-        n = q.shape[0]
-        raw = self.inertia(self.features(q))
-        diagonal = jax.nn.softplus(raw[:n]) + self.settings.floor
-        upper = jnp.zeros((n, n), raw.dtype).at[np.triu_indices(n, 1)].set(raw[n:])
-        return (jnp.diag(diagonal) + upper) * np.sqrt(np.asarray(self.scales.inertia)).astype(raw.dtype)[:, None]
+    def body_speeds(self, q: Vector, v: Vector) -> Array:
+        """L̂(q)ᵀ v, shape (dof · rank,), the root of twice the kinetic energy, body by body."""
+        entries = tuple(self.axes * v[:, None])
+        states = self.motion(self.features(q), jnp.zeros_like(self.start, shape=self.axes.shape[1]), entries)
+        root = np.sqrt(self.scales.inertia)
+        return jnp.concatenate([(body @ x) * s for body, x, s in zip(self.bodies, states, root.tolist(), strict=True)])
+
+    def drive_inertia(self) -> Vector:
+        """Inertia that each joint has by itself [kg m²], above the floor."""
+        return (jax.nn.softplus(self.drives) + self.settings.floor) * np.asarray(self.scales.inertia, self.drives.dtype)
 
     def kinetic_energy(self, q: Vector, v: Vector) -> Scalar:
-        return 0.5 * jnp.sum((self.factor(q).T @ v) ** 2)
+        return 0.5 * jnp.sum(self.body_speeds(q, v) ** 2) + 0.5 * jnp.sum(self.drive_inertia() * v**2)
 
     def potential_energy(self, q: Vector) -> Scalar:
-        heads = self.potential(self.features(q))
-        return heads @ np.asarray(self.scales.torque).astype(heads.dtype)
+        states = self.height(self.features(q), self.start, (None,) * len(self.weights))
+        heads = jnp.sum(self.weights * jnp.stack(states), axis=1)
+        return heads @ np.asarray(self.scales.torque, heads.dtype)
 
     def momentum(self, q: Vector, v: Vector) -> Vector:
-        factor = self.factor(q)
-        return factor @ (factor.T @ v)
+        speeds, pull_back = jax.vjp(lambda x: self.body_speeds(q, x), v)
+        return pull_back(speeds)[0] + self.drive_inertia() * v
 
     def mass_matrix(self, q: Vector) -> Matrix:
-        factor = self.factor(q)
-        return factor @ factor.T
+        factor = jax.vmap(lambda unit: self.body_speeds(q, unit))(jnp.eye(len(self.axes), dtype=q.dtype))
+        return factor @ factor.T + jnp.diag(self.drive_inertia())
 
 
 def make_delan(key: Array, features: JointFeatures, scales: Scales, settings: DelanSettings) -> Delan:
     """Draw an untrained model."""
-    n = len(features.joint_types)
-    mass_key, potential_key = jax.random.split(key)
-    rows = (*range(n), *np.triu_indices(n, 1)[0].tolist())
-    serial = settings.coupling == "serial"
-    outboard = tuple(row + 1 for row in rows) if serial else (0,) * len(rows)
-    shares = tuple(d for d in range(1, n) for _ in range(n - d)) if serial and n > 1 else (0,)
-    inertia = make_network(mass_key, features.owner, outboard, settings.hidden, settings.activation, shares)
-    inboard = tuple(-joint for joint in features.owner)
-    shares = tuple(-k for k in range(n) for _ in range(k + 1))
-    heads = tuple(-k for k in range(n))
-    potential = make_network(potential_key, inboard, heads, settings.hidden, settings.activation, shares)
-    return Delan(inertia, potential, features, scales, settings)
+    n, rank, potential_rank = len(features.joint_types), settings.rank, settings.potential_rank
+    keys = jax.random.split(key, 6)
+    bodies = jax.random.normal(keys[2], (n, rank, rank)) / np.sqrt(n * rank)
+    return Delan(
+        motion=make_chain_network(keys[0], features.owner, n, rank),
+        axes=jax.random.normal(keys[1], (n, rank)),
+        bodies=tuple(bodies),
+        drives=jnp.full(n, -5.0),
+        height=make_chain_network(keys[3], features.owner, n, potential_rank),
+        start=jax.random.normal(keys[4], (potential_rank,)),
+        weights=jax.random.normal(keys[5], (n, potential_rank)) / np.sqrt(potential_rank),
+        features=features,
+        scales=scales,
+        settings=settings,
+    )

@@ -1,10 +1,12 @@
-"""Torques that follow from energies: one forward-mode pass of the momentum, one reverse-mode pass of T − V, no Hessians.
+"""Torques that follow from energies: one forward pass of the momentum, one reverse pass of T − V, no Hessians.
 
 Euler–Lagrange says τ = d/dt ∂L/∂v − ∂L/∂q. The first term is the derivative of p(q, v) along (v, a), a Jacobian–vector
 product; the second is a gradient of a scalar. All functions take one sample and are pure JAX.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
@@ -31,13 +33,13 @@ def coriolis_torque(arm: AbstractLagrangian, q: Vector, v: Vector) -> Vector:
     return momentum_rate - jax.grad(arm.kinetic_energy)(q, v)
 
 
-def coriolis_matrix(arm: AbstractLagrangian, q: Vector, v: Vector) -> Matrix:
+def coriolis_matrix(mass_matrix: Callable[[Vector], Matrix], q: Vector, v: Vector) -> Matrix:
     """The factorisation c = C v by Christoffel symbols, for which Ṁ − 2C is skew; shape (dof, dof) [N m s/rad].
 
     C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j − ∂M_jk/∂q_i) v_k: one forward pass gives Ṁ, one Jacobian of M(q) v the rest.
     """
-    _, mass_rate = jax.jvp(arm.mass_matrix, (q,), (v,))
-    slope = jax.jacfwd(lambda x: arm.mass_matrix(x) @ v)(q)
+    _, mass_rate = jax.jvp(mass_matrix, (q,), (v,))
+    slope = jax.jacfwd(lambda x: mass_matrix(x) @ v)(q)
     return 0.5 * (mass_rate + slope - slope.T)
 
 

@@ -1,4 +1,4 @@
-"""How a joint position enters a network: on the circle where the joint wraps, on its recorded range where it does not."""
+"""How a joint position enters a network: on the circle where the joint wraps, else on its recorded range."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ JOINT_TYPES = ("continuous", "revolute", "prismatic")
 class JointFeatures:
     """Position features of each joint, with the constants that put them at mean 0 and size 1 on the training data.
 
-    A continuous joint gives (sin q, cos q). A bounded revolute joint gives the same two, turned to the middle of its range
-    and standardised, so that a narrow range still fills the network's input. A prismatic joint gives its scaled position.
+    A continuous joint gives (sin q, cos q). A bounded revolute joint gives the same two, turned to the middle of its
+    range and standardised, so that a narrow range still fills the network's input. A prismatic joint gives its scaled
+    position.
 
     Args:
         joint_types: one of JOINT_TYPES for each joint.
@@ -67,18 +68,20 @@ def fit_features(q: np.ndarray, joint_types: tuple[str, ...]) -> JointFeatures:
             raise ModelError(f"joint type {kind!r} is unknown", choices=JOINT_TYPES)
     wraps = np.array([kind == "continuous" for kind in joint_types])
     centre = np.where(wraps, 0.0, 0.5 * (q.min(axis=0) + q.max(axis=0)))
-    x = q - centre
-    columns, offset, scale = _rows(joint_types), [], []
-    for index, joint in enumerate(columns):
-        second = index and columns[index - 1] == joint
-        raw = (
-            x[:, joint] if joint_types[joint] == "prismatic" else np.cos(x[:, joint]) if second else np.sin(x[:, joint])
-        )
-        offset.append(0.0 if wraps[joint] else float(raw.mean()))
-        scale.append(1.0 if wraps[joint] else max(float(raw.std()), 1e-6))
-    return JointFeatures(tuple(joint_types), tuple(map(float, centre)), tuple(offset), tuple(scale))
+    raw = _columns(q - centre, joint_types)
+    circle = wraps[_rows(joint_types)]
+    offset = np.where(circle, 0.0, raw.mean(axis=0))
+    scale = np.where(circle, 1.0, np.maximum(raw.std(axis=0), 1e-6))
+    return JointFeatures(tuple(joint_types), *(tuple(x.tolist()) for x in (centre, offset, scale)))
+
+
+def _columns(x: np.ndarray, joint_types: tuple[str, ...]) -> np.ndarray:
+    parts = [
+        [x[:, j]] if kind == "prismatic" else [np.sin(x[:, j]), np.cos(x[:, j])] for j, kind in enumerate(joint_types)
+    ]
+    return np.stack([column for part in parts for column in part], axis=1)
 
 
 def guess_joint_types(q: np.ndarray) -> tuple[str, ...]:
-    """Call a joint continuous where it was seen over more than half a turn, else revolute; sliding joints must be named."""
+    """Call a joint continuous where seen over more than half a turn, else revolute; sliding joints must be named."""
     return tuple("continuous" if span > np.pi else "revolute" for span in np.ptp(q, axis=0))

@@ -13,6 +13,17 @@ from jaxtyping import Array
 from lagnet.errors import ModelError
 
 ACTIVATIONS: dict[str, Callable] = {"silu": jax.nn.silu, "tanh": jnp.tanh, "softplus": jax.nn.softplus}
+LARGEST_WIDTH = 2048
+
+
+def check_widths(hidden: tuple[int, ...]) -> None:
+    """Refuse layers that are empty or too wide to be meant.
+
+    Raises:
+        ModelError: a width outside 1 … LARGEST_WIDTH, or no hidden layer.
+    """
+    if not hidden or not all(1 <= width <= LARGEST_WIDTH for width in hidden):
+        raise ModelError(f"hidden layers {list(hidden)} are not usable", next_step=f"give widths 1 … {LARGEST_WIDTH}")
 
 
 class OrderedNetwork(eqx.Module):

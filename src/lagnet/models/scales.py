@@ -12,7 +12,7 @@ class Scales:
     """Typical size of each joint's velocity [rad/s], acceleration [rad/s²] and torque [N m] in the training data.
 
     Args:
-        velocity, acceleration, torque: root mean square (velocity, acceleration) and standard deviation (torque), per joint.
+        velocity, acceleration: root mean square of each joint; torque: its standard deviation.
     """
 
     velocity: tuple[float, ...]
@@ -27,9 +27,8 @@ class Scales:
 
 def fit_scales(v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> Scales:
     """Measure the sizes on training data of shape (n, dof); joints that never move or push count as size 1."""
-    return Scales(
-        _sizes(np.sqrt(np.mean(v**2, axis=0))), _sizes(np.sqrt(np.mean(a**2, axis=0))), _sizes(tau.std(axis=0))
-    )
+    rms = (np.sqrt(np.mean(x**2, axis=0)) for x in (v, a))
+    return Scales(*map(_sizes, rms), _sizes(tau.std(axis=0)))
 
 
 def _sizes(values: np.ndarray) -> tuple[float, ...]:

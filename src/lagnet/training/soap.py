@@ -1,7 +1,7 @@
 """SOAP: Adam in the slowly turning eigenbasis of each weight matrix's gradient covariance.
 
-Curvature-aware at the price of a few small matrix products a step; on these smooth, noise-free regressions it needs several
-times fewer steps than Adam. Source: Vyas et al. 2024 (SOAP), after Gupta et al. 2018 (Shampoo).
+Curvature-aware at the price of a few small matrix products a step; on these smooth regressions it needs many times
+fewer steps than Adam. Source: Vyas et al. 2024 (SOAP), after Gupta et al. 2018 (Shampoo).
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 import optax
 from jaxtyping import Array
 
 
 class Basis(NamedTuple):
-    """Gradient covariances of one matrix from the left and the right, and their eigenvectors."""
+    """Gradient covariances of a stack of matrices from the left and the right, and their eigenvectors."""
 
     left: Array
     right: Array
@@ -23,13 +24,19 @@ class Basis(NamedTuple):
     right_vectors: Array
 
 
+class Group(NamedTuple):
+    """What is remembered of all weights of one shape, stacked: both Adam moments, the second in the eigenbasis."""
+
+    first: Array
+    second: Array
+    basis: Basis | None
+
+
 class SoapState(NamedTuple):
-    """Step count, both Adam moments (first in the weights' space, second in the eigenbasis) and one Basis a matrix."""
+    """Step count, and one Group a shape."""
 
     count: Array
-    first: Any
-    second: Any
-    bases: tuple[Basis | None, ...]
+    groups: tuple[Group, ...]
 
 
 def scale_by_soap(
@@ -44,59 +51,79 @@ def scale_by_soap(
     """
 
     def init(params: Any) -> SoapState:
-        zeros = jax.tree.map(jnp.zeros_like, params)
-        return SoapState(jnp.zeros((), jnp.int32), zeros, zeros, tuple(map(_empty_basis, jax.tree.leaves(params))))
+        stacks = _stack(jax.tree.leaves(params))
+        groups = tuple(Group(jnp.zeros_like(x), jnp.zeros_like(x), _start_basis(x)) for x in stacks)
+        return SoapState(jnp.zeros((), jnp.int32), groups)
 
     def update(grads: Any, state: SoapState, params: Any = None) -> tuple[Any, SoapState]:
         count = state.count + 1
         leaves, tree = jax.tree.flatten(grads)
         turn = (count % every == 1) | (every == 1)
         out = [
-            _leaf_update(g, m, s, basis, count, turn, (b1, b2, eps))
-            for g, m, s, basis in zip(
-                leaves, jax.tree.leaves(state.first), jax.tree.leaves(state.second), state.bases, strict=True
-            )
+            _step(grad, group, count, turn, (b1, b2, eps))
+            for grad, group in zip(_stack(leaves), state.groups, strict=True)
         ]
-        steps, first, second, bases = zip(*out, strict=True)
-        restore = tree.unflatten
-        return restore(steps), SoapState(count, restore(first), restore(second), tuple(bases))
+        steps = _unstack([step for step, _ in out], leaves)
+        return tree.unflatten(steps), SoapState(count, tuple(group for _, group in out))
 
     return optax.GradientTransformation(init, update)
 
 
-def _empty_basis(leaf: Array) -> Basis | None:
-    if leaf.ndim != 2 or 1 in leaf.shape:
+def _members(leaves: list[Array]) -> dict[tuple[int, ...], list[int]]:
+    """Positions of the leaves of each shape."""
+    found: dict[tuple[int, ...], list[int]] = {}
+    for position, leaf in enumerate(leaves):
+        found.setdefault(leaf.shape, []).append(position)
+    return found
+
+
+def _stack(leaves: list[Array]) -> list[Array]:
+    return [jnp.stack([leaves[i] for i in positions]) for positions in _members(leaves).values()]
+
+
+def _unstack(stacks: list[Array], leaves: list[Array]) -> list[Array]:
+    out = list(leaves)
+    for stack, positions in zip(stacks, _members(leaves).values(), strict=True):
+        for row, position in enumerate(positions):
+            out[position] = stack[row]
+    return out
+
+
+def _start_basis(stack: Array) -> Basis | None:
+    """Identity bases for stacks of matrices, None for vectors, which Adam serves as well."""
+    if stack.ndim != 3 or 1 in stack.shape[1:]:
         return None
-    rows, columns = (jnp.eye(size, dtype=leaf.dtype) for size in leaf.shape)
+    rows, columns = (
+        jnp.asarray(np.tile(np.eye(size), (stack.shape[0], 1, 1)), stack.dtype) for size in stack.shape[1:]
+    )
     return Basis(jnp.zeros_like(rows), jnp.zeros_like(columns), rows, columns)
 
 
-def _leaf_update(grad, first, second, basis, count, turn, memory):
-    """One leaf's step; without a basis this is Adam."""
+def _step(grad: Array, group: Group, count: Array, turn: Array, memory: tuple[float, float, float]):
+    """The step of all weights of one shape; without a basis this is Adam."""
     b1, b2, eps = memory
-    first = b1 * first + (1 - b1) * grad
-    if basis is not None:
-        basis = _follow(basis, grad, turn, b2)
-    second = b2 * second + (1 - b2) * _rotate(grad, basis) ** 2
+    first = b1 * group.first + (1 - b1) * grad
+    basis = None if group.basis is None else _follow(group.basis, grad, turn, b2)
+    second = b2 * group.second + (1 - b2) * _rotate(grad, basis) ** 2
     root = jnp.sqrt(second / (1 - b2**count)) + eps
     step = _rotate(first / (1 - b1**count), basis) / root
-    return _rotate_back(step, basis), first, second, basis
+    return _rotate_back(step, basis), Group(first, second, basis)
 
 
 def _rotate(x: Array, basis: Basis | None) -> Array:
-    return x if basis is None else basis.left_vectors.T @ x @ basis.right_vectors
+    return x if basis is None else basis.left_vectors.mT @ x @ basis.right_vectors
 
 
 def _rotate_back(x: Array, basis: Basis | None) -> Array:
-    return x if basis is None else basis.left_vectors @ x @ basis.right_vectors.T
+    return x if basis is None else basis.left_vectors @ x @ basis.right_vectors.mT
 
 
 def _follow(basis: Basis, grad: Array, turn: Array, b2: float) -> Basis:
     """Let the covariances take in the gradient and, every few steps, turn the eigenvectors after them."""
-    left = b2 * basis.left + (1 - b2) * grad @ grad.T
-    right = b2 * basis.right + (1 - b2) * grad.T @ grad
+    left = b2 * basis.left + (1 - b2) * grad @ grad.mT
+    right = b2 * basis.right + (1 - b2) * grad.mT @ grad
 
-    def turned(_):
+    def turned(_: None) -> tuple[Array, Array]:
         return jnp.linalg.qr(left @ basis.left_vectors)[0], jnp.linalg.qr(right @ basis.right_vectors)[0]
 
     vectors = jax.lax.cond(turn, turned, lambda _: (basis.left_vectors, basis.right_vectors), None)

@@ -1,0 +1,143 @@
+"""The kinds of learned model by name: what settings each takes and how one is drawn.
+
+A new kind is a file with a settings dataclass and a maker, and one line in KINDS; saving, training, the command line
+and the conformance tests then know it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import jax
+from jaxtyping import Array
+
+from lagnet.errors import ModelError, closest
+from lagnet.models.augmented import PARITIES, Augmented
+from lagnet.models.black_box_lagrangian import BlackBoxSettings, make_black_box
+from lagnet.models.conservative import Conservative, FreeLagrangian
+from lagnet.models.delan import DelanSettings, make_delan
+from lagnet.models.dynamics import AbstractDynamics
+from lagnet.models.features import JointFeatures
+from lagnet.models.feed_forward import FeedForward
+from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_perceptron_delan
+from lagnet.models.scales import Scales
+from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network
+
+
+@dataclass(frozen=True)
+class AugmentedSettings:
+    """What carries H, c and g, and the network that carries ε.
+
+    Args:
+        mechanics: name of the kind under ε; mechanics_settings: its settings, None for its defaults.
+        residual: size of the network behind ε.
+        parity: "odd" keeps only what changes sign with the velocity, which mechanics can never be; "any" keeps all of
+            it, which can also be conservative torque and must be held back by the penalty λ.
+    """
+
+    mechanics: str = "delan"
+    mechanics_settings: Any = None
+    residual: TorqueNetworkSettings = field(default_factory=TorqueNetworkSettings)
+    parity: str = "any"
+
+    def __post_init__(self) -> None:
+        if self.parity not in PARITIES:
+            raise ModelError(f"parity {self.parity!r} is unknown", choices=PARITIES)
+        if self.mechanics_settings is None:
+            object.__setattr__(self, "mechanics_settings", settings_class(self.mechanics)())
+
+
+@dataclass(frozen=True)
+class ModelSpec:
+    """All that a model is, but for its weights.
+
+    Args:
+        kind: name in KINDS.
+        settings: the settings dataclass of the kind.
+        joints: joint names in model order.
+        features: how positions enter, fitted to the training data; scales: sizes of motion and torque in it.
+    """
+
+    kind: str
+    settings: Any
+    joints: tuple[str, ...]
+    features: JointFeatures
+    scales: Scales
+
+    @property
+    def joint_types(self) -> tuple[str, ...]:
+        """'continuous', 'revolute' or 'prismatic' for each joint."""
+        return self.features.joint_types
+
+
+def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
+    below, above = jax.random.split(key)
+    mechanics = _entry(settings.mechanics)[1](below, features, scales, settings.mechanics_settings)
+    return Augmented(mechanics, make_torque_network(above, features, scales, settings.residual), settings.parity)
+
+
+KINDS: dict[str, tuple[type, Callable[..., AbstractDynamics]]] = {
+    "delan": (DelanSettings, lambda *given: Conservative(make_delan(*given))),
+    "delan-perceptron": (PerceptronDelanSettings, lambda *given: Conservative(make_perceptron_delan(*given))),
+    "delan-blackbox": (BlackBoxSettings, lambda *given: FreeLagrangian(make_black_box(*given))),
+    "ffnn": (TorqueNetworkSettings, lambda *given: FeedForward(make_torque_network(*given))),
+    "delan-ffnn": (AugmentedSettings, _make_augmented),
+}
+
+
+def settings_class(kind: str) -> type:
+    """The settings dataclass of a kind.
+
+    Raises:
+        ModelError: no such kind.
+    """
+    return _entry(kind)[0]
+
+
+def draw(spec: ModelSpec, key: Array) -> AbstractDynamics:
+    """An untrained model with random weights."""
+    return _entry(spec.kind)[1](key, spec.features, spec.scales, spec.settings)
+
+
+def settings_from(kind: str, given: Mapping[str, Any]) -> Any:
+    """Settings of a kind from plain values, as they come from a file.
+
+    Raises:
+        ModelError: an unknown setting, or a value that the kind refuses.
+    """
+    cls = settings_class(kind)
+    names = [f.name for f in dataclasses.fields(cls)]
+    for name in given:
+        if name not in names:
+            hint = closest(name, names)
+            raise ModelError(
+                f"{kind} has no setting {name!r}", choices=names, next_step=f"did you mean {hint}?" if hint else None
+            )
+    values = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
+    if cls is AugmentedSettings:
+        values = _nested(values)
+    try:
+        return cls(**values)
+    except (TypeError, ValueError) as error:
+        raise ModelError(f"settings of {kind} are not usable: {error}") from None
+
+
+def _nested(values: dict[str, Any]) -> dict[str, Any]:
+    below = values.get("mechanics", "delan")
+    if isinstance(values.get("mechanics_settings"), Mapping):
+        values["mechanics_settings"] = settings_from(below, values["mechanics_settings"])
+    if isinstance(values.get("residual"), Mapping):
+        values["residual"] = settings_from("ffnn", values["residual"])
+    return values
+
+
+def _entry(kind: str) -> tuple[type, Callable[..., AbstractDynamics]]:
+    if kind not in KINDS:
+        hint = closest(kind, KINDS)
+        raise ModelError(
+            f"model {kind!r} is unknown", choices=KINDS, next_step=f"did you mean {hint}?" if hint else None
+        )
+    return KINDS[kind]
