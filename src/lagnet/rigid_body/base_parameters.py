@@ -18,6 +18,7 @@ from lagnet.rigid_body.robot import Robot
 
 # Of the largest pivot, columns scaled to one: rounding leaves 1e-15, angles rounded in a URDF 1e-10, physics 0.3.
 RANK = 1e-7
+EMPTY = 1e-11  # of the largest column: what is smaller is a column of rounding errors
 NEGLIGIBLE = 1e-9  # coefficients below are rounding
 
 
@@ -85,7 +86,7 @@ def base_parameters(robot: Robot, seed: int = 0) -> BaseParameters:
     """
     regressor = _random_regressor(robot, seed)
     scale = np.linalg.norm(regressor, axis=0)
-    scale[scale < RANK * scale.max()] = np.inf  # a column of rounding errors must not be blown up to one
+    scale[scale < EMPTY * scale.max()] = np.inf  # must not be blown up to one
     found: Any = qr(regressor / scale, mode="r", pivoting=True)
     upper, order = np.asarray(found[0])[: regressor.shape[1]], np.asarray(found[1])
     pivots = np.abs(np.diag(upper))

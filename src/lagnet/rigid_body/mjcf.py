@@ -13,11 +13,9 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports]
 from lagnet.errors import RobotError
 from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
 from lagnet.rigid_body.mass_checks import mass_warnings
+from lagnet.rigid_body.mjcf_checks import SUPPORTED, reduce_mjcf
+from lagnet.rigid_body.urdf_checks import LARGEST, numbers
 from lagnet.rigid_body.xml_files import XmlFile
-
-KEPT = ("compiler", "default", "option", "worldbody")
-FILES = ("file", "meshdir", "texturedir", "assetdir")
-SUPPORTED = ("hinge", "slide")
 
 
 def read_mjcf(file: XmlFile) -> Description:
@@ -27,11 +25,11 @@ def read_mjcf(file: XmlFile) -> Description:
         RobotError: naming the file and the body or joint at fault.
     """
     root, where = file.root(), file.source
-    warnings = _simplify(root, where)
+    gravity = [numbers(o, "gravity", 3, where, o) for o in root.findall("option") if o.get("gravity") is not None]
+    warnings = reduce_mjcf(root, where)
     model = _build(root, where)
-    option = root.find("option")
-    if option is not None and option.get("gravity"):
-        model.gravity.linear = _numbers(option, "gravity", 3, where)
+    if gravity:
+        model.gravity.linear = gravity[-1]
     for i in range(1, model.njoints):
         if model.joints[i].nq != 1 or model.joints[i].nv != 1:
             raise RobotError(f"joint {model.names[i]} has no single position", where=where, choices=SUPPORTED)
@@ -41,49 +39,6 @@ def read_mjcf(file: XmlFile) -> Description:
     _check_finite(model, where)
     warnings += _friction_warnings(model) + mass_warnings(model, where)
     return Description(model, types, moving_bodies(model), (), "mjcf", where, file, (), tuple(warnings))
-
-
-def _simplify(root: Element, where: str) -> list[str]:
-    """Removes what is not kinematics or inertia, and refuses what would open other files or change the physics."""
-    for element in root.iter():
-        if element.tag in ("include", "model", "attach", "plugin"):
-            raise RobotError(f"<{element.tag}> is refused: one file must hold the whole arm", where=where)
-    warnings = [f"<{tag}> is left out" for tag in ("equality", "tendon") if root.find(tag) is not None]
-    for child in list(root):
-        if child.tag not in KEPT:
-            root.remove(child)
-        for key in FILES:
-            child.attrib.pop(key, None)
-    compiler = root.find("compiler")
-    if compiler is not None and compiler.get("inertiafromgeom") == "true":
-        raise RobotError("inertiafromgeom is set: inertials are needed in the file", where=where)
-    world = root.find("worldbody")
-    if world is None:
-        raise RobotError("has no <worldbody>", where=where)
-    for body in world.iter("body"):
-        warnings += _simplify_body(body, where)
-    for geom in world.findall("geom"):
-        world.remove(geom)
-    return warnings
-
-
-def _simplify_body(body: Element, where: str) -> list[str]:
-    name, warnings = body.get("name", "without a name"), []
-    joints = [part for part in body if part.tag in ("joint", "freejoint")]
-    for joint in joints:
-        kind = "free" if joint.tag == "freejoint" else joint.get("type", "hinge")
-        if kind not in SUPPORTED:
-            what = f"joint {joint.get('name', '')} of body {name} is of type '{kind}', which has no single position"
-            raise RobotError(what, where=where, choices=SUPPORTED)
-    if len(joints) > 1:
-        raise RobotError(f"body {name} has {len(joints)} joints; give each its own body", where=where)
-    has_inertial = body.find("inertial") is not None
-    for part in list(body):
-        if part.tag == "geom" and not has_inertial and (part.get("type") == "mesh" or part.get("mesh")):
-            raise RobotError(f"body {name} has a mesh and no <inertial>", where=where, next_step="state its inertial")
-        if (part.tag == "geom" and has_inertial) or part.tag in ("camera", "light"):
-            body.remove(part)
-    return warnings
 
 
 def _build(root: Element, where: str) -> pin.Model:
@@ -109,19 +64,9 @@ def _type(model: pin.Model, i: int) -> str:
     return "revolute" if bounded else "continuous"
 
 
-def _numbers(element: Element, key: str, count: int, where: str) -> np.ndarray:
-    try:
-        values = np.array([float(x) for x in element.get(key, "").split()])
-    except ValueError:
-        values = np.empty(0)
-    if values.size != count or not np.isfinite(values).all():
-        raise RobotError(f"<{element.tag}> {key}='{element.get(key, '')[:60]}' is not {count} numbers", where=where)
-    return values
-
-
 def _check_finite(model: pin.Model, where: str) -> None:
     for i in range(1, model.njoints):
         body = model.inertias[i]
         found = [body.mass, *body.lever, *body.inertia.ravel(), *model.jointPlacements[i].homogeneous.ravel()]
-        if not np.isfinite(found).all():
-            raise RobotError(f"joint {model.names[i]} or its body holds a number that is not finite", where=where)
+        if not np.isfinite(found).all() or np.abs(found).max() > LARGEST:
+            raise RobotError(f"joint {model.names[i]} or its body holds a number that no robot has", where=where)

@@ -17,7 +17,7 @@ from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tens
 from lagnet.rigid_body.mjcf import read_mjcf
 from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path
 from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.writing import mjcf_text, urdf_text, write_text
+from lagnet.rigid_body.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.xml_files import read_xml
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
@@ -220,6 +220,14 @@ class Robot:
             RobotError: the arm has rotor inertias, which a URDF cannot hold.
         """
         write_text(Path(path), urdf_text(self._description))
+
+    def write_bare_urdf(self, path: str | Path) -> None:
+        """Writes a URDF of the moving bodies alone, without shapes and meshes, e.g. for a simulator without a window.
+
+        Raises:
+            RobotError: the arm has rotor inertias, which a URDF cannot hold.
+        """
+        write_text(Path(path), bare_urdf_text(self._description))
 
     def write_mjcf(self, path: str | Path) -> None:
         """Writes the arm as plain MJCF: bodies, joints with limits, inertials, gravity."""

@@ -84,6 +84,9 @@ def normalise(
 
 def _strip(root: Element) -> None:
     """Removes shapes, materials, transmissions and simulator extensions: nothing here that opens another file."""
+    name = root.get("name") or "robot"
+    root.attrib.clear()
+    root.set("name", name)
     for child in list(root):
         if child.tag not in KEPT:
             root.remove(child)
@@ -91,6 +94,9 @@ def _strip(root: Element) -> None:
         for part in list(child):
             if part.tag not in (*KEPT[child.tag], "mimic", "dynamics"):
                 child.remove(part)
+    for tensor in root.iter("inertia"):
+        for key in ("ixy", "ixz", "iyz"):
+            tensor.set(key, tensor.get(key, "0"))
 
 
 def _held_positions(joints: dict[str, Element], held: set[str], warnings: list[str]) -> dict[str, float]:

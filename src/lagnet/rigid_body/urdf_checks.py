@@ -12,6 +12,7 @@ from lagnet.errors import RobotError
 
 SUPPORTED = ("fixed", "revolute", "continuous", "prismatic")
 MAX_JOINTS = 2_000  # far above any robot; keeps the parser's recursion and the regressor's size in bounds
+LARGEST = 1e9  # of a length, mass or inertia in SI units, even where grams and millimetres stand in their place
 SCALARS = {"mass": ("value",), "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
 SCALARS |= {"limit": ("lower", "upper", "effort", "velocity"), "dynamics": ("damping", "friction")}
 SCALARS |= {"mimic": ("multiplier", "offset")}
@@ -37,6 +38,8 @@ def numbers(
         raise RobotError(f"{what}='{text[:60]}' has {values.size} numbers, expected {count}", where=where)
     if not np.isfinite(values).all():
         raise RobotError(f"{what}='{text[:60]}' is not finite", where=where)
+    if element.tag != "limit" and np.abs(values).max() > LARGEST:
+        raise RobotError(f"{what}='{text[:60]}' is larger than any robot's", where=where)
     return values
 
 
@@ -83,6 +86,9 @@ def _check_link(link: Element, where: str) -> None:
             if inertial.find(tag) is None:
                 raise RobotError(f"the inertial of link {link.get('name')} has no <{tag}>", where=where)
         _check_numbers(inertial, link, where)
+        for key in ("ixx", "iyy", "izz"):
+            if inertial.find("inertia").get(key) is None:  # pyright: ignore[reportOptionalMemberAccess]
+                raise RobotError(f"the inertia of link {link.get('name')} has no {key}", where=where)
         if inertial.find("mass").get("value") is None:  # pyright: ignore[reportOptionalMemberAccess]
             raise RobotError(f"the mass of link {link.get('name')} has no value", where=where)
 

@@ -32,13 +32,22 @@ def urdf_text(description: Description) -> str:
     Raises:
         RobotError: the arm has rotor inertias, which a URDF cannot hold.
     """
+    if description.kind == "mjcf":
+        return bare_urdf_text(description)
+    return _serialise(_edited_urdf(description))
+
+
+def bare_urdf_text(description: Description) -> str:
+    """URDF text of the moving bodies alone, made from the model: no shapes, no fixed joints.
+
+    Raises:
+        RobotError: the arm has rotor inertias, which a URDF cannot hold.
+    """
     if description.model.armature.any():
         raise RobotError(
             "a URDF cannot hold rotor inertias (armature)", where=description.source, next_step="write MJCF instead"
         )
-    root = _plain_urdf(description) if description.kind == "mjcf" else _edited_urdf(description)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode", xml_declaration=False) + "\n"
+    return _serialise(_bare_urdf(description))
 
 
 def mjcf_text(description: Description) -> str:
@@ -50,6 +59,10 @@ def mjcf_text(description: Description) -> str:
     bodies = {0: SubElement(root, "worldbody")}
     for i in range(1, model.njoints):
         bodies[i] = _mjcf_body(bodies[model.parents[i]], description, i)
+    return _serialise(root)
+
+
+def _serialise(root: Element) -> str:
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -114,7 +127,7 @@ def _set_inertial(link: Element, body: pin.Inertia) -> None:
     SubElement(inertial, "inertia", {key: repr(float(tensor[i, j])) for key, i, j in names})
 
 
-def _plain_urdf(description: Description) -> Element:
+def _bare_urdf(description: Description) -> Element:
     """Links and joints made from the model itself."""
     model = description.model
     root = Element("robot", name="arm")
