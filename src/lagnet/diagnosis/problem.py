@@ -9,6 +9,7 @@ import numpy as np
 
 from lagnet.effects.motion import Motion
 from lagnet.errors import DiagnosisError
+from lagnet.models.corrected import torque_along
 from lagnet.recordings.conditioning import Conditioned, Stretch
 from lagnet.recordings.smoothing import SETTLING, low_pass
 from lagnet.types import InverseDynamics
@@ -42,7 +43,8 @@ class Piece:
 
     def motion(self, problem: Problem) -> Motion:
         """The piece as the effects see it."""
-        return Motion(self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal)
+        recorded = low_pass(self.tau, problem.rate, problem.bandwidth)
+        return Motion(self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal, recorded)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,8 +87,10 @@ class Problem:
         total = sum(p.keep.size for p in self.fit)
         every = max(1, total // SUMMARY)
         rows = [p.keep[::every] for p in self.fit]
-        pick = {n: np.concatenate([getattr(p, n)[r] for p, r in zip(self.fit, rows, strict=True)]) for n in
-                ("time", "q", "v", "a", "load")}
+        pick = {
+            n: np.concatenate([getattr(p, n)[r] for p, r in zip(self.fit, rows, strict=True)])
+            for n in ("time", "q", "v", "a", "load")
+        }
         return Motion(**pick, slow=self.slow, model=self.nominal)
 
 
@@ -146,7 +150,7 @@ def _cuts(n: int, settle: int, step: int) -> Iterator[tuple[int, int, int, int]]
 
 def _piece(problem: Problem, stretch: Stretch, rows: slice, keep: np.ndarray) -> Piece:
     q, v, a = stretch.q[rows], stretch.v[rows], stretch.a[rows]
-    load = problem.nominal.inverse_dynamics(q, v, a)
+    load = torque_along(problem.nominal, stretch.time[rows], q, v, a)
     counts = ~_resting(v, problem)[keep]
     return Piece(stretch.time[rows], q, v, a, stretch.tau[rows], load, stretch.recording, keep, counts)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lagnet.effects.effect import Effect
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
+from lagnet.effects.inertia.link_inertia import LinkInertia
 from lagnet.effects.inertia.payload import Payload
 from lagnet.effects.inertia.rotor_inertia import RotorInertia
 from lagnet.effects.signal.time_delay import TimeDelay
@@ -25,6 +26,7 @@ _EFFECTS: tuple[Effect, ...] = (
     QuadraticDrag(),
     RotorInertia(),
     Payload(),
+    LinkInertia(),
     GravityTilt(),
     JointSpring(),
     TorqueGain(),

@@ -15,13 +15,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from lagnet.effects.motion import Motion
 
 Values = dict[str, float]
+Stage = Literal["body", "torque", "signal"]
+"""When an effect acts: on the bodies, whose torque is the load that transmissions feel; then at the joint; then on the
+recorded signal, which holds all that came before."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,8 @@ class Effect(ABC):
     contains: ClassVar[tuple[str, ...]] = ()  # effects that are special cases of it: never named beside it
     reaches_all: ClassVar[bool] = False  # True: it changes the torque of other joints too
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
-    stage: ClassVar[str] = "torque"  # "torque": part of the arm; "signal": acts on the recorded torque after all others
+    stage: ClassVar[Stage] = "torque"
+    instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
@@ -79,9 +83,26 @@ class Effect(ABC):
         lower = np.array([p.lower for p in self.parameters])
         return lower, np.array([p.upper for p in self.parameters])
 
+    def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
+        """The numbers in which a refit steps, shape (k,): the parameters, or what the law is plainer in."""
+        return np.array([values[p.name] for p in self.parameters])
+
+    def from_coordinates(self, coordinates: np.ndarray) -> Values:
+        """Inverse of `coordinates`."""
+        return {p.name: float(c) for p, c in zip(self.parameters, coordinates, strict=True)}
+
+    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of the coordinates."""
+        return np.array([p.lower for p in self.parameters]), np.array([p.upper for p in self.parameters])
+
     def feasible(self, values: Mapping[str, float]) -> bool:
         """Whether the parameters obey physics (bounds; pseudo-inertias positive definite where there are any)."""
         return all(p.lower <= values[p.name] <= p.upper for p in self.parameters)
+
+    def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
+        """Whether fitted coefficients, noise and all, could be those of real physics; looser than `feasible`."""
+        lower, upper = self.bounds(shape)
+        return bool(np.all(coefficients >= lower) and np.all(coefficients <= upper))
 
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         """None if the motion can show the effect, else the reason why it cannot, for an abstention."""

@@ -20,6 +20,7 @@ class Motion:
         load: shape (n, dof), torque that the model with all effects so far gives [N m].
         slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v) = tanh(v/ε).
         model: the nominal model, for effects that change bodies or gravity.
+        recorded: shape (n, dof), recorded torque, low-passed [N m]; None where there is no recording.
         cache: shared store of regressors that several effects need.
     """
 
@@ -30,6 +31,7 @@ class Motion:
     load: Trajectory
     slow: JointVector
     model: InverseDynamics | Any
+    recorded: Trajectory | None = None
     cache: dict = field(default_factory=dict, repr=False)
 
     @property

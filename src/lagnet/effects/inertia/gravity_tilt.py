@@ -24,6 +24,7 @@ class GravityTilt(Effect):
     )
     whole_arm = True
     reaches_all = True
+    stage = "body"
     needs_bodies = True
     shown_by = "joints that do not turn about the vertical, in many poses"
     confused_with = ("encoder_offset", "payload", "torque_offset")

@@ -7,10 +7,12 @@ import numpy as np
 
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_any_motion
-from lagnet.effects.inertia.body import inertia_about_centre, is_physical, parameters_of_body
 from lagnet.effects.motion import Motion
+from lagnet.rigid_body.inertia import is_physically_consistent, parameters_of_body, tensor_about_com
 
 INERTIA = ("Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")  # the order of Pinocchio's dynamic parameters
+
+FARTHEST = 1.0  # [m] that a payload's centre of mass may plausibly lie off the last joint
 
 
 @final
@@ -27,6 +29,7 @@ class Payload(Effect):
     )
     whole_arm = True
     reaches_all = True
+    stage = "body"
     needs_bodies = True
     shown_by = "the wrist held in several orientations, and accelerated"
     confused_with = ("torque_gain", "gravity_tilt", "link_inertia")
@@ -39,17 +42,29 @@ class Payload(Effect):
         )
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        lower = np.full(10, -np.inf)
-        lower[[0, 4, 6, 9]] = 0.0
-        return lower, np.full(10, np.inf)
+        return np.array([0.0, *np.full(9, -np.inf)]), np.full(10, np.inf)
+
+    def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
+        mass = coefficients[0]
+        return bool(mass > 0 and np.linalg.norm(coefficients[1:4]) < FARTHEST * mass)
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         mass = float(coefficients[0])
         if not mass > 0:
             return {p.name: 0.0 for p in self.parameters}
-        centre, inertia = inertia_about_centre(np.asarray(coefficients, dtype=float))
+        body = np.asarray(coefficients, dtype=float)
+        centre, inertia = body[1:4] / mass, tensor_about_com(body)
         moments = [inertia[i, j] for i, j in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))]
         return dict(zip((p.name for p in self.parameters), map(float, [mass, *centre, *moments]), strict=True))
+
+    def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
+        return self.body_parameters(values)
+
+    def from_coordinates(self, coordinates: np.ndarray) -> Values:
+        return self.values(coordinates, {})
+
+    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.bounds({})
 
     def body_parameters(self, values: Mapping[str, float]) -> np.ndarray:
         """The ten inertial parameters (m, m c, I about the joint frame), shape (10,)."""
@@ -59,7 +74,7 @@ class Payload(Effect):
         return self.columns(motion, joint, {}) @ self.body_parameters(values)
 
     def feasible(self, values: Mapping[str, float]) -> bool:
-        return values["m"] > 0 and is_physical(values["m"], _inertia(values))
+        return values["m"] > 0 and bool(is_physically_consistent(self.body_parameters(values)))
 
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         return needs_any_motion(motion)

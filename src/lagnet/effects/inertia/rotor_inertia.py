@@ -19,6 +19,7 @@ class RotorInertia(LinearEffect):
     parameters = (Parameter("Ia", "I_a", "kg m²", "inertia of rotor and gear about the joint", lower=0.0),)
     shown_by = "strong accelerations of the joint"
     confused_with = ("link_inertia", "payload")
+    stage = "body"
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

@@ -20,12 +20,14 @@ class TimeDelay(Effect):
     formula = "τ(t − T) − τ(t)"
     parameters = (Parameter("T", "T", "s", "time by which torque lags motion", lower=-0.25, upper=0.25),)
     stage = "signal"
+    instantaneous = False
     shown_by = "fast motion with quick changes of torque"
     confused_with = ("viscous_friction", "joint_elasticity", "backlash")
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        return -np.gradient(motion.load[:, joint], motion.time)[:, None]
+        torque = motion.load if motion.recorded is None else motion.recorded  # holds what the model may still lack
+        return -np.gradient(torque[:, joint], motion.time)[:, None]
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"T": float(np.clip(coefficients[0], -0.25, 0.25))}

@@ -17,7 +17,7 @@ class TorqueGain(Effect):
     name = "torque_gain"
     title = "Torque gain"
     formula = "(g − 1) τ"
-    parameters = (Parameter("g", "g", "–", "recorded torque over true torque", lower=0.05, upper=20.0),)
+    parameters = (Parameter("g", "g", "–", "recorded torque over true torque", lower=0.4, upper=2.5),)
     stage = "signal"
     shown_by = "several levels of torque"
     confused_with = ("payload", "saturation", "rotor_inertia")
@@ -27,7 +27,7 @@ class TorqueGain(Effect):
         return motion.load[:, [joint]]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        return np.array([-0.95]), np.array([19.0])
+        return np.array([-0.6]), np.array([1.5])
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"g": 1.0 + float(coefficients[0])}

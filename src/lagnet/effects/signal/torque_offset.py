@@ -17,6 +17,7 @@ class TorqueOffset(LinearEffect):
     title = "Torque offset"
     formula = "b"
     parameters = (Parameter("b", "b", "N m", "constant added to the recorded torque"),)
+    stage = "signal"
     shown_by = "motion in both directions, in many poses"
     confused_with = ("asymmetric_friction", "gravity_tilt", "joint_spring")
     source = "swevers2007"

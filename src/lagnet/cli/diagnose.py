@@ -1,0 +1,71 @@
+"""`lagnet diagnose`: recordings against a model, to a folder with verdict, report and corrected model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lagnet.errors import LagnetError
+
+
+def command(
+    recordings: Annotated[
+        list[Path], typer.Argument(help="Recordings to fit on (.csv, .csv.gz, .parquet, .npz, .mat).")
+    ],
+    robot: Annotated[
+        str | None,
+        typer.Option(help="Nominal model: URDF or MJCF, a name such as ur5, or a folder of train or diagnose."),
+    ] = None,
+    simulated: Annotated[
+        list[Path] | None, typer.Option(help="Recordings of the simulator, where there is no model of it.")
+    ] = None,
+    holdout: Annotated[
+        list[Path] | None, typer.Option(help="Recordings that are not fitted; else the last fifth of each.")
+    ] = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
+    ] = None,
+    torque_constant: Annotated[
+        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("diagnosis"),
+    bandwidth: Annotated[
+        float | None, typer.Option(help="Low-pass on torques [Hz]; else chosen from the data.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
+) -> None:
+    """Say where recordings and robot differ, and name the physics that was left out."""
+    if simulated or robot is None:
+        raise LagnetError(
+            "no nominal model was given",
+            where="--robot",
+            next_step="give --robot a URDF, MJCF, name or a folder of train or diagnose",
+        )
+    from lagnet.cli.console import say
+    from lagnet.diagnosis.diagnose import diagnose
+    from lagnet.diagnosis.writing import write_diagnosis
+    from lagnet.models.loading import load_any
+    from lagnet.recordings.load import load_recording
+    from lagnet.reports.diagnosis_report import write_report
+
+    constants = [float(x) for x in torque_constant.split(",")] if torque_constant else None
+    model = load_any(robot)
+    read = [
+        [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]
+        for paths in (recordings, holdout or [])
+    ]
+    say(f"{sum(map(len, read))} recordings read, diagnosing")
+    result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, seed=seed)
+    write_diagnosis(result, out)
+    write_report(result.verdict.to_dict(), result.evidence, out / "report.html")
+    for effect in result.effects:
+        say(effect.explanation)
+    if not result.effects:
+        say(
+            "No left-out physics was found."
+            if not result.verdict.found
+            else "The mismatch found fits no known physics."
+        )
+    say(f"report: {out / 'report.html'}")

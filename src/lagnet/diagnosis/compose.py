@@ -1,0 +1,202 @@
+"""Puts what an inquiry found into a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lagnet._version import __version__
+from lagnet.diagnosis.ceiling import Ceiling, Signals, find_ceiling, signals_of
+from lagnet.diagnosis.localisation import locate
+from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.diagnosis.rivals import Contest
+from lagnet.diagnosis.verdict import (
+    Abstained,
+    EffectEvidence,
+    EffectFound,
+    JointFit,
+    JointMismatch,
+    NamedParameter,
+    Unexplained,
+    Verdict,
+)
+from lagnet.diagnosis.wording import advice, explain
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected import torque_with
+from lagnet.recordings.recording import Recording
+
+if TYPE_CHECKING:
+    from lagnet.diagnosis.diagnose import Inquiry
+
+ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant
+
+
+def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
+    """All parts of the verdict."""
+    problem = inquiry.problem
+    effects = _effects(inquiry)
+    conditioning = {
+        "rate_hz": inquiry.fit.rate,
+        "bandwidth_hz": inquiry.fit.bandwidth,
+        "velocity_from": inquiry.fit.velocity_from,
+        "acceleration_from": inquiry.fit.acceleration_from,
+    }
+    mismatch = tuple(_mismatch(inquiry, j) for j in range(problem.n_dof))
+    after = left_over(inquiry)
+    return Verdict(
+        lagnet_version=__version__,
+        seed=inquiry.seed,
+        nominal=nominal_of(problem),
+        recordings=(*(_recording(r, "fit") for r in fit), *(_recording(r, "holdout") for r in held)),
+        conditioning=conditioning,
+        joints=mismatch,
+        effects=effects,
+        unexplained=tuple(_unexplained(inquiry, after, j) for j in range(problem.n_dof)),
+        fit=tuple(_fit(inquiry, after, j) for j in range(problem.n_dof)),
+        abstentions=_abstentions(inquiry),
+        warnings=tuple(dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)),
+    )
+
+
+def is_prismatic(problem: Problem, joint: int | None) -> bool:
+    """Whether a joint slides."""
+    kinds = getattr(problem.nominal, "joint_types", None)
+    return joint is not None and kinds is not None and kinds[joint] == "prismatic"
+
+
+def nominal_of(problem: Problem) -> dict[str, Any]:
+    """What was held against the recordings."""
+    model = problem.nominal
+    return {
+        "kind": str(getattr(model, "kind", "learned")),
+        "source": str(getattr(model, "source", "") or type(model).__name__),
+        "sha256": str(getattr(model, "sha256", "")),
+        "joints": list(problem.joints),
+    }
+
+
+def _recording(recording: Recording, role: str) -> dict[str, Any]:
+    return {
+        "path": recording.path,
+        "role": role,
+        "sha256": recording.sha256,
+        "n_samples": len(recording),
+        "duration_s": recording.duration,
+        "rate_hz": recording.rate,
+    }
+
+
+def _stacked(problem: Problem, pieces: Sequence[Piece]) -> tuple[np.ndarray, np.ndarray]:
+    rest = np.concatenate([problem.residual(p) for p in pieces])
+    return rest, np.concatenate([p.counts for p in pieces])
+
+
+def _mismatch(inquiry: Inquiry, joint: int) -> JointMismatch:
+    problem = inquiry.problem
+    rest, counts = _stacked(problem, problem.fit)
+    residual = rest[:, joint] * counts[:, joint]
+    rms = float(np.sqrt(np.sum(residual**2) / max(1, counts[:, joint].sum())))
+    noise = float(inquiry.noise[joint])
+    where = locate(problem, residual, joint, is_prismatic(problem, joint))
+    return JointMismatch(
+        joint=problem.joints[joint],
+        significant=bool(rms > ABOVE * noise),
+        residual_rms=rms,
+        noise_rms=noise,
+        nmse_nominal=float(rms**2 / problem.scale[joint] ** 2),
+        where=tuple(asdict(w) for w in where) if rms > ABOVE * noise else (),
+    )
+
+
+def _effects(inquiry: Inquiry) -> tuple[EffectFound, ...]:
+    contests = {c.index: c for c in inquiry.contests}
+    pairs = []
+    for n, index in enumerate(inquiry.found.selection):
+        part = inquiry.held_out[index]
+        rival, odds = contests[index].best_rival
+        evidence = EffectEvidence(part.without, part.with_it, part.share, rival, odds)
+        pairs.append((part.share, _effect(inquiry, n, contests[index], evidence)))
+    return tuple(effect for _, effect in sorted(pairs, key=lambda p: -p[0]))
+
+
+def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence) -> EffectFound:
+    named = inquiry.refit.effects[n]
+    law = effect_named(named.effect)
+    sliding = is_prismatic(inquiry.problem, named.joint)
+    parameters = tuple(
+        NamedParameter(p.name, float(named.values[p.name]), p.unit_for(sliding), inquiry.refit.intervals[n][p.name])
+        for p in law.parameters
+    )
+    joint = None if named.joint is None else inquiry.problem.joints[named.joint]
+    status = "tied" if contest.tied else "named"
+    words = explain(law, joint, parameters, contest.tied, evidence)
+    return EffectFound(law.name, joint, status, contest.tied, parameters, evidence, words, named.interval)
+
+
+@dataclass(frozen=True, eq=False)
+class Leftover:
+    """What the refitted effects leave, on the samples that count.
+
+    Args:
+        fit, holdout: (residual, counts), each of shape (n, dof).
+        seen, unseen: what a flexible model may look at, on the same samples.
+    """
+
+    fit: tuple[np.ndarray, np.ndarray]
+    holdout: tuple[np.ndarray, np.ndarray]
+    seen: Signals
+    unseen: Signals
+
+
+def left_over(inquiry: Inquiry) -> Leftover:
+    """Residuals of the corrected model on fit and held-out samples."""
+    problem, parts = inquiry.problem, []
+    for pieces in (problem.fit, problem.holdout):
+        rest = [problem.reduce(p, p.tau - torque_with(p.motion(problem), inquiry.refit.effects)) for p in pieces]
+        parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
+    return Leftover(*parts, signals_of(problem, problem.fit), signals_of(problem, problem.holdout))
+
+
+def _power(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
+    return float(np.sum((residual[:, joint] * counts[:, joint]) ** 2) / max(1, counts[:, joint].sum()))
+
+
+def _unexplained(inquiry: Inquiry, after: Leftover, joint: int) -> Unexplained:
+    problem = inquiry.problem
+    left = _power(*after.holdout, joint)
+    before = _power(*_stacked(problem, problem.holdout), joint)
+    noise = float(inquiry.noise[joint] ** 2)
+    above = bool(np.sqrt(left) > ABOVE * np.sqrt(noise))
+    ceiling = ceiling_of(inquiry, after, joint) if above else Ceiling(0.0, ())
+    share = float(np.clip(max(0.0, left - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if above else 0.0
+    return Unexplained(problem.joints[joint], above, share, ceiling.depends_on)
+
+
+def ceiling_of(inquiry: Inquiry, after: Leftover, joint: int) -> Ceiling:
+    """What boosted trees find in the residual after the named effects."""
+    (rest, counts), (test, test_counts) = after.fit, after.holdout
+    truth = test[:, joint] * test_counts[:, joint]
+    return find_ceiling(after.seen, rest[:, joint], counts[:, joint], after.unseen, truth, inquiry.seed)
+
+
+def _fit(inquiry: Inquiry, after: Leftover, joint: int) -> JointFit:
+    problem = inquiry.problem
+    torque = np.concatenate([problem.reduce(p, p.tau)[:, joint] for p in problem.holdout])
+    variance = max(float(np.var(torque)), 1e-300)
+    nominal, named = _power(*_stacked(problem, problem.holdout), joint), _power(*after.holdout, joint)
+    floor = float(inquiry.noise[joint] ** 2) / variance
+    return JointFit(problem.joints[joint], nominal / variance, named / variance, None, floor)
+
+
+def _abstentions(inquiry: Inquiry) -> tuple[Abstained, ...]:
+    out = []
+    for a in inquiry.library.abstentions:
+        law = effect_named(a.effect)
+        if a.effect == "link_inertia" and a.joint == inquiry.problem.n_dof - 1:
+            continue  # the payload stands for it
+        joint = None if a.joint is None else inquiry.problem.joints[a.joint]
+        out.append(Abstained(a.effect, joint, a.reason, advice(law, joint)))
+    return tuple(out)

@@ -1,0 +1,150 @@
+"""The main job: recordings and a nominal model in, a verdict and a corrected model out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lagnet.diagnosis.arm_search import Found, search_arm
+from lagnet.diagnosis.compose import compose_verdict
+from lagnet.diagnosis.curves import collect_evidence
+from lagnet.diagnosis.evidence import Evidence
+from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
+from lagnet.diagnosis.fitting import Workbench, make_workbench
+from lagnet.diagnosis.grams import collect_grams
+from lagnet.diagnosis.library import Library, build_library
+from lagnet.diagnosis.noise_floor import noise_floor
+from lagnet.diagnosis.problem import Problem, pose_problem
+from lagnet.diagnosis.refit import Refit, refit
+from lagnet.diagnosis.rivals import Contest, hold_contests
+from lagnet.diagnosis.settle import settle_on
+from lagnet.diagnosis.verdict import EffectFound, Verdict
+from lagnet.errors import DiagnosisError
+from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.recordings.conditioning import Conditioned, condition
+from lagnet.recordings.recording import Recording
+from lagnet.recordings.splits import holdout_split
+from lagnet.types import InverseDynamics
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What `diagnose` gives back.
+
+    Args:
+        verdict: the conclusions.
+        corrected: the nominal model with the named physics.
+        evidence: the curves behind the verdict, for reports.
+        fit_recordings, holdout_recordings: what was used for what.
+        conditioned_holdout: the held-out recordings on their even clock.
+    """
+
+    verdict: Verdict
+    corrected: CorrectedModel
+    evidence: Evidence
+    fit_recordings: tuple[Recording, ...]
+    holdout_recordings: tuple[Recording, ...]
+    conditioned_holdout: Conditioned
+
+    @property
+    def effects(self) -> tuple[EffectFound, ...]:
+        """The physics that was left out, strongest first."""
+        return self.verdict.effects
+
+    def to_json(self) -> str:
+        """The text of verdict.json."""
+        return self.verdict.to_json()
+
+
+@dataclass(frozen=True, eq=False)
+class Inquiry:
+    """All that the steps of one diagnosis found out, for those who put it into words and pictures."""
+
+    problem: Problem
+    fit: Conditioned
+    holdout: Conditioned
+    noise: np.ndarray
+    library: Library
+    bench: Workbench
+    unseen: Workbench
+    found: Found
+    contests: tuple[Contest, ...]
+    held_out: dict[int, HeldOut]
+    refit: Refit
+    seed: int
+
+
+def diagnose(
+    recordings: Sequence[Recording],
+    robot: InverseDynamics | Any,
+    holdout: Sequence[Recording] | None = None,
+    *,
+    bandwidth: float | None = None,
+    seed: int = 0,
+) -> Diagnosis:
+    """Says whether and where recordings differ from a model, names the physics left out, and corrects the model.
+
+    Args:
+        recordings: of the real arm (or of the better simulation), joints as the robot's.
+        robot: the nominal model: a Robot, a learned model, or the corrected model of an earlier diagnosis.
+        holdout: recordings that are not fitted; None: the last fifth of each recording.
+        bandwidth: of the zero-phase low-pass on torques [Hz]; None: chosen from the data.
+        seed: of everything random.
+
+    Raises:
+        DiagnosisError: no recording, or joints that are not the model's.
+    """
+    fit_on, held = _divide(recordings, robot, holdout)
+    fit = condition(fit_on, bandwidth)
+    unseen = condition(held, fit.bandwidth)
+    problem = pose_problem(robot, fit, unseen)
+    inquiry = inquire(problem, fit, unseen, seed)
+    corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow)
+    verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
+    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen)
+
+
+def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, seed: int) -> Inquiry:
+    """The steps of a diagnosis in their order, on a problem already posed."""
+    noise = noise_floor(problem, fit, seed)
+    library = build_library(problem)
+    bench = make_workbench(library, collect_grams(problem, library, problem.fit))
+    judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
+    noise_power, torque_power = bench.samples * noise**2, bench.samples * problem.scale**2
+    found = settle_on(bench, judge, search_arm(bench, noise_power, torque_power), problem.scale)
+    contests = hold_contests(bench, found)
+    sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
+    parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
+    fitted = refit(problem, named_effects(library, found), sigma)
+    return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed)
+
+
+def named_effects(library: Library, found: Found) -> tuple[NamedEffect, ...]:
+    """The selection as effects with the search's parameters, in the order of the selection."""
+    out = []
+    for i in found.selection:
+        h = library.hypotheses[i]
+        out.append(NamedEffect(h.effect, h.joint, h.law.values(found.fit.coefficients[i], dict(h.shape))))
+    return tuple(out)
+
+
+def _divide(
+    recordings: Sequence[Recording], robot: InverseDynamics, holdout: Sequence[Recording] | None
+) -> tuple[tuple[Recording, ...], tuple[Recording, ...]]:
+    if not recordings:
+        raise DiagnosisError(
+            "no recording was given", next_step="give at least one recording of joint motion and torque"
+        )
+    for recording in (*recordings, *(holdout or ())):
+        if recording.n_dof != robot.n_dof:
+            raise DiagnosisError(
+                f"the recording has {recording.n_dof} joints, the model {robot.n_dof}",
+                where=recording.path or None,
+                choices=robot.joints,
+            )
+    if holdout:
+        return tuple(recordings), tuple(holdout)
+    return holdout_split(recordings)

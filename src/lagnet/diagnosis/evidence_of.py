@@ -1,0 +1,57 @@
+"""What each named effect does for the held-out recordings: the error with it and, the rest refitted, without it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.arm_search import Found
+from lagnet.diagnosis.fitting import Fit, Workbench, fit_selection, take_off
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Held-out errors of one effect, at its joint or averaged over the joints that it reaches.
+
+    Args:
+        without, with_it: nMSE.
+        share: of the mismatch that it alone explains, 0 to 1.
+    """
+
+    without: float
+    with_it: float
+    share: float
+
+
+def unseen_nmse(bench: Workbench, fit: Fit, unseen: Workbench, scale: np.ndarray) -> np.ndarray:
+    """nMSE of a fit on held-out blocks, shape (dof,)."""
+    return _unseen_error(fit, unseen) / unseen.samples / scale**2
+
+
+def _unseen_error(fit: Fit, unseen: Workbench) -> np.ndarray:
+    error = np.zeros(unseen.library.n_dof)
+    for joint, total in enumerate(unseen.total):
+        own = [i for i in fit.selection if i in unseen.library.slots[joint]]
+        theta = np.concatenate([fit.coefficients[i] for i in own]) if own else np.zeros(0)
+        error[joint] = max(0.0, take_off(total, unseen.columns(joint, own), theta)[-1, -1])
+    return error
+
+
+def held_out_evidence(
+    bench: Workbench, unseen: Workbench, found: Found, scale: np.ndarray, sigma: np.ndarray
+) -> dict[int, HeldOut]:
+    """For each selected hypothesis its part in the held-out fit."""
+    with_all = unseen_nmse(bench, found.fit, unseen, scale)
+    nominal = np.array([t[-1, -1] for t in unseen.total]) / unseen.samples / scale**2
+    out = {}
+    for index in found.selection:
+        rest = fit_selection(bench, [i for i in found.selection if i != index], sigma, folds=False)
+        without = unseen_nmse(bench, rest, unseen, scale)
+        joint = bench.library.hypotheses[index].joint
+        far = bench.library.hypotheses[index].law.reaches_all
+        at = np.flatnonzero(without > 1.02 * with_all) if far else np.array([joint])
+        at = at if at.size else np.arange(len(scale))
+        share = float(np.clip(np.sum((without - with_all)[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
+        out[index] = HeldOut(float(np.mean(without[at])), float(np.mean(with_all[at])), share)
+    return out

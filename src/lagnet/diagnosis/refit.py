@@ -1,0 +1,261 @@
+"""All parameters of the named effects together, by the exact laws, inside physical bounds, with their intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+from scipy.stats import t as student
+
+from lagnet.diagnosis.grams import BLOCK
+from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.effect import Effect
+from lagnet.models.corrected import NamedEffect, torque_with
+from lagnet.rigid_body.consistent_fit import fit_consistent
+from lagnet.rigid_body.inertia import is_physically_consistent, parameters_of_body
+
+STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
+DONE = 1e-6  # relative change of the error at which the steps end
+MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
+RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
+DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """Effects with jointly fitted parameters.
+
+    Args:
+        effects: in the order given.
+        intervals: for each effect, for each parameter, the 95 % interval.
+        correlations: shape (n_parameters, n_parameters) of the coordinates of all effects.
+    """
+
+    effects: tuple[NamedEffect, ...]
+    intervals: tuple[dict[str, tuple[float, float]], ...]
+    correlations: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class _Slots:
+    """Where each effect's coordinates stand in the vector of all."""
+
+    effects: tuple[NamedEffect, ...]
+    starts: np.ndarray
+
+    def law(self, n: int) -> Effect:
+        return effect_named(self.effects[n].effect)
+
+    def of(self, n: int) -> slice:
+        return slice(int(self.starts[n]), int(self.starts[n + 1]))
+
+    def named(self, x: np.ndarray) -> tuple[NamedEffect, ...]:
+        return tuple(
+            NamedEffect(e.effect, e.joint, self.law(n).from_coordinates(x[self.of(n)]), e.interval)
+            for n, e in enumerate(self.effects)
+        )
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        pairs = [self.law(n).coordinate_bounds() for n in range(len(self.effects))]
+        return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
+
+
+def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Refit:
+    """Gauss–Newton from the search's values, joints weighted by 1/σ².
+
+    Args:
+        problem: the fit pieces are used, a spread of them where there are very many samples.
+        effects: with starting values.
+        sigma: shape (dof,), residual of each joint [N m].
+    """
+    if not effects:
+        return Refit((), (), np.zeros((0, 0)))
+    laws = [effect_named(e.effect) for e in effects]
+    parts = [law.coordinates(e.values) for law, e in zip(laws, effects, strict=True)]
+    slots = _Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
+    work = _Work(problem, spread(problem.fit), sigma, slots)
+    x = work.descend(np.clip(np.concatenate(parts), *slots.bounds()), np.ones(int(slots.starts[-1]), dtype=bool))
+    x = _make_consistent(work, x)
+    covariance, freedom = work.covariance(x)
+    return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), _correlations(covariance))
+
+
+def spread(pieces: Sequence[Piece], most: int = MOST_SAMPLES) -> tuple[Piece, ...]:
+    """Pieces spread evenly over all, of together at most so many samples at full rate (at least one)."""
+    total = sum(p.time.size for p in pieces)
+    if total <= most:
+        return tuple(pieces)
+    wanted = max(1, int(len(pieces) * most / total))
+    return tuple(pieces[i] for i in np.unique(np.linspace(0, len(pieces) - 1, wanted).round().astype(int)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    problem: Problem
+    pieces: tuple[Piece, ...]
+    sigma: np.ndarray
+    slots: _Slots
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "motions", tuple(p.motion(self.problem) for p in self.pieces))
+
+    def residuals(self, x: np.ndarray) -> list[np.ndarray]:
+        """Weighted residuals of each piece, shape (len(keep), dof)."""
+        effects = self.slots.named(x)
+        out = []
+        for piece, motion in zip(self.pieces, self.motions, strict=True):  # pyright: ignore
+            rest = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
+            out.append(rest * piece.counts / self.sigma)
+        return out
+
+    def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of the residuals, shape (len(keep), dof, n_free)."""
+        base = self.residuals(x)
+        columns: list[list[np.ndarray]] = []
+        _, upper = self.slots.bounds()
+        for i in np.flatnonzero(free):
+            step = DIFFERENCE * max(abs(x[i]), 1e-2)
+            if x[i] + step > upper[i]:
+                step = -step
+            moved = x.copy()
+            moved[i] += step
+            columns.append([(m - b) / step for m, b in zip(self.residuals(moved), base, strict=True)])
+        return [np.stack([c[n] for c in columns], axis=2) for n in range(len(base))]
+
+    def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Bounded Gauss–Newton with step halving; parameters that are not free stay."""
+        if not free.any():
+            return x
+        lower, upper = (b[free] for b in self.slots.bounds())
+        rest = self.residuals(x)
+        error = _power(rest)
+        for _ in range(STEPS):
+            gram, moment = _normal(self.jacobian(x, free), rest)
+            step = _bounded_step(gram, -moment, lower - x[free], upper - x[free])
+            for shrink in (1.0, 0.5, 0.25, 0.1, 0.03):
+                trial = x.copy()
+                trial[free] = np.clip(x[free] + shrink * step, lower, upper)
+                moved = self.residuals(trial)
+                if _power(moved) < error:
+                    break
+            else:
+                return x
+            gain, x, rest, error = error - _power(moved), trial, moved, _power(moved)
+            if gain < DONE * error:
+                break
+        return x
+
+    def covariance(self, x: np.ndarray) -> tuple[np.ndarray, int]:
+        """Sandwich of block scores, and the number of blocks: residuals that hang together widen the intervals."""
+        rest, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
+        gram, _ = _normal(jacobian, rest)
+        inverse = _inverse(gram)
+        rate = self.problem.rate / max(1, int(np.median(np.diff(self.pieces[0].keep))))
+        length = max(8, int(BLOCK * rate / self.problem.bandwidth))
+        scores = []
+        for r, j in zip(rest, jacobian, strict=True):
+            for rows in np.array_split(np.arange(r.shape[0]), max(1, round(r.shape[0] / length))):
+                scores.append(np.einsum("njk,nj->k", j[rows], r[rows]))
+        table = np.array(scores)
+        freedom = max(2, len(table) - 1)
+        inflation = len(table) / max(1.0, len(table) - np.sqrt(x.size) - 1)
+        robust = inverse @ (table.T @ table) @ inverse * inflation
+        count = sum(p.counts.sum() for p in self.pieces)
+        plain = inverse * _power(rest) / max(1.0, count - x.size)
+        widest = np.maximum(np.sqrt(np.diag(plain) / np.maximum(np.diag(robust), 1e-300)), 1.0)
+        return robust * widest[:, None] * widest[None, :], freedom
+
+
+def _power(residuals: Sequence[np.ndarray]) -> float:
+    return float(sum(np.sum(r**2) for r in residuals))
+
+
+def _normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    flat = [j.reshape(-1, j.shape[2]) for j in jacobian]
+    gram = sum((j.T @ j for j in flat), np.zeros((flat[0].shape[1],) * 2))
+    moment = sum((j.T @ r.ravel() for j, r in zip(flat, residuals, strict=True)), np.zeros(flat[0].shape[1]))
+    return gram, moment
+
+
+def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
+
+
+def _inverse(gram: np.ndarray) -> np.ndarray:
+    scaled, scale = _scaled(gram)
+    return np.linalg.inv(scaled) * scale[:, None] * scale[None, :]
+
+
+def _bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    scaled, scale = _scaled(gram)
+    root = np.linalg.cholesky(scaled).T
+    target = np.linalg.solve(root.T, moment * scale)
+    low, high = np.minimum(lower, -1e-15) / scale, np.maximum(upper, 1e-15) / scale
+    return lsq_linear(root, target, bounds=(low, high), method="bvls").x * scale
+
+
+def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
+    """Replaces bodies that no mass can have by the nearest that one can, and refits the rest around them."""
+    for n, effect in enumerate(work.slots.effects):
+        if effect.effect not in ("payload", "link_inertia"):
+            continue
+        own = np.arange(x.size)[work.slots.of(n)]
+        base = _body_before(work.problem, effect)
+        if is_physically_consistent(base + x[own]):
+            continue
+        gram, _ = _normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
+        rest = np.setdiff1d(np.arange(x.size), own)
+        cross = gram[np.ix_(own, rest)]
+        schur = gram[np.ix_(own, own)] - (cross @ _inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
+        schur = 0.5 * (schur + schur.T)
+        x = x.copy()
+        x[own] = fit_consistent(schur, schur @ (base + x[own]), _prior(base, base + x[own])) - base
+        x = work.descend(x, np.isin(np.arange(x.size), rest))
+    return x
+
+
+def _body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
+    """Parameters (10,) of the body that an effect changes: none for a payload, else the modelled link."""
+    if effect.effect == "payload" or effect.joint is None:
+        return np.zeros(10)
+    return problem.nominal.inertial_parameters()[effect.joint]
+
+
+def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """A real body near the wanted one: the modelled link, or a ball of the wanted mass where that is."""
+    if is_physically_consistent(base):
+        return base
+    mass = max(float(wanted[0]), 1e-3)
+    return parameters_of_body(mass, wanted[1:4] / mass, 0.01 * mass * np.eye(3))
+
+
+def _intervals(
+    slots: _Slots, x: np.ndarray, covariance: np.ndarray, freedom: int
+) -> tuple[dict[str, tuple[float, float]], ...]:
+    width = float(student.ppf(0.975, freedom))
+    out = []
+    for n in range(len(slots.effects)):
+        law, at = slots.law(n), slots.of(n)
+        here = law.from_coordinates(x[at])
+        slopes = np.array([_slope(law, x[at], k, here) for k in range(x[at].size)]).T  # (parameters, coordinates)
+        variance = np.einsum("pk,kl,pl->p", slopes, covariance[at, at], slopes)
+        spread_of = dict(zip(here, width * np.sqrt(np.maximum(variance, 0.0)), strict=True))
+        out.append({k: (float(x - spread_of[k]), float(x + spread_of[k])) for k, x in here.items()})
+    return tuple(out)
+
+
+def _slope(law: Effect, x: np.ndarray, k: int, here: dict[str, float]) -> list[float]:
+    step = 1e-6 * max(abs(x[k]), 1e-3)
+    moved = x.copy()
+    moved[k] += step
+    there = law.from_coordinates(moved)
+    return [(there[name] - here[name]) / step for name in here]
+
+
+def _correlations(covariance: np.ndarray) -> np.ndarray:
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return covariance * scale[:, None] * scale[None, :]

@@ -1,0 +1,108 @@
+"""Every named effect against what else could explain the same data: odds, and ties where the data cannot tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.arm_search import Found, total_score, views_of
+from lagnet.diagnosis.fitting import Workbench
+from lagnet.diagnosis.search import JointView, compatible
+
+TIE = 1.3  # log10 odds below which two explanations are tied: twenty to one
+SAME = 1e-3  # relative difference of errors below which two explanations are the same, whatever the odds
+SHOWN = 6  # rivals that the evidence lists
+
+
+@dataclass(frozen=True)
+class Contest:
+    """One selected hypothesis and its rivals.
+
+    Args:
+        index: the hypothesis.
+        rivals: effect names with the log10 odds of the selected one over each, closest first.
+        tied: names that the data cannot tell from it.
+    """
+
+    index: int
+    rivals: tuple[tuple[str, float], ...]
+    tied: tuple[str, ...]
+
+    @property
+    def best_rival(self) -> tuple[str | None, float | None]:
+        """The closest rival and the log10 odds over it; None where there is none."""
+        return self.rivals[0] if self.rivals else (None, None)
+
+
+def hold_contests(bench: Workbench, found: Found) -> tuple[Contest, ...]:
+    """Puts each selected hypothesis against every replacement at its place."""
+    views = views_of(bench, found)
+    contests = [_far_contest(bench, found, i) for i in found.far]
+    for joint, own in enumerate(found.local):
+        contests.extend(_local_contest(views[joint], own, i) for i in own)
+    return tuple(contests)
+
+
+def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest:
+    here, error = view.score(own), view.loss(own)[0]
+    odds: dict[str, float] = {}
+    tied: set[str] = set()
+    for names, other in _replacements(view, own, index):
+        score = view.score(other)
+        if not np.isfinite(score):
+            continue
+        gap = float((here - score) / np.log(10.0))
+        same = view.loss(other)[0] < (1.0 + SAME) * error
+        for name in names:
+            if gap < odds.get(name, np.inf):
+                odds[name] = gap
+            if gap < TIE or same:
+                tied.add(name)
+    return Contest(index, _ranked(odds), tuple(sorted(tied)))
+
+
+def _replacements(
+    view: JointView, own: tuple[int, ...], index: int
+) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
+    """Selections with another hypothesis in its place, alone, for it and a neighbour, or two in its place."""
+    hypotheses = view.bench.library.hypotheses
+    place = hypotheses[index].place
+    rest = tuple(k for k in own if k != index)
+    fresh = [k for k in view.bench.library.local[view.joint] if k not in own and hypotheses[k].place != place]
+    own_name = hypotheses[index].effect
+    for k in fresh:
+        wider = own_name in hypotheses[k].law.contains  # fits at least as well by itself: no rival on its own
+        if not wider and compatible(view, rest, k):
+            yield (hypotheses[k].effect,), (*rest, k)
+        for gone in rest:  # one law for two
+            left = tuple(i for i in rest if i != gone)
+            both = {own_name, hypotheses[gone].effect} <= {*hypotheses[k].law.confused_with}
+            if both and compatible(view, left, k):
+                yield (hypotheses[k].effect,), (*left, k)
+    near = [k for k in fresh if hypotheses[k].effect in hypotheses[index].law.confused_with]
+    for n, k in enumerate(near):  # two laws for one
+        for m in near[n + 1 :]:
+            if compatible(view, rest, k) and compatible(view, (*rest, k), m):
+                yield (hypotheses[k].effect, hypotheses[m].effect), (*rest, k, m)
+
+
+def _far_contest(bench: Workbench, found: Found, index: int) -> Contest:
+    hypotheses = bench.library.hypotheses
+    rest = tuple(i for i in found.far if i != index)
+    odds: dict[str, float] = {}
+    for k in bench.library.reaching:
+        if k in found.far or hypotheses[k].place == hypotheses[index].place:
+            continue
+        score = total_score(bench, (*rest, k), found)
+        if np.isfinite(score):
+            name = hypotheses[k].effect
+            odds[name] = min(odds.get(name, np.inf), float((found.score - score) / np.log(10.0)))
+    same = hypotheses[index].effect
+    tied = tuple(sorted(n for n, o in odds.items() if o < TIE and n != same))
+    return Contest(index, _ranked({n: o for n, o in odds.items() if n != same}), tied)
+
+
+def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:
+    return tuple(sorted(odds.items(), key=lambda item: item[1])[:SHOWN])

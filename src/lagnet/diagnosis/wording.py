@@ -1,0 +1,35 @@
+"""Sentences of a verdict that an engineer can act on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from lagnet.diagnosis.verdict import EffectEvidence, NamedParameter
+from lagnet.effects.effect import Effect
+
+MOST_PARAMETERS = 4  # that a sentence lists
+
+
+def explain(
+    law: Effect, joint: str | None, parameters: Sequence[NamedParameter], tied: Sequence[str], evidence: EffectEvidence
+) -> str:
+    """One or two sentences: what, where, how large, and what it does for the held-out error."""
+    where = f"at {joint}" if joint else "on the whole arm"
+    shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in parameters[:MOST_PARAMETERS])
+    first = f"{law.title} {where}, {law.formula} with {shown}: without it the held-out error is "
+    first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
+    first += f"{percent(evidence.holdout_nmse_with)}."
+    if tied:
+        first += f" These recordings cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
+    return first
+
+
+def percent(share: float) -> str:
+    """A share as a percentage with two digits that count."""
+    return f"{100.0 * share:.2g} %"
+
+
+def advice(law: Effect, joint: str | None) -> str:
+    """What to record so that an effect can be judged."""
+    where = f"{joint}: " if joint else ""
+    return f"{where}record {law.shown_by}"

@@ -1,0 +1,190 @@
+"""A nominal model with the physics that a diagnosis named: itself an inverse dynamics, and the next nominal model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, final
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.motion import Motion
+from lagnet.errors import EffectError
+from lagnet.types import InverseDynamics, JointVector, MassMatrix, Samples, Trajectory
+
+STAGES = ("body", "torque", "signal")
+UNORDERED = 1.0  # [s] between samples of which no order is known: nothing carries over from one to the next
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """One effect of the catalogue with its parameters, at a joint (index) or on the whole arm (None).
+
+    Args:
+        effect: name in the catalogue.
+        joint: index of the joint, None for the whole arm.
+        values: parameters by name, SI units.
+        interval: (start, end) [s] outside which the effect is absent; None: always there.
+    """
+
+    effect: str
+    joint: int | None
+    values: Mapping[str, float]
+    interval: tuple[float, float] | None = None
+
+    def added(self, motion: Motion) -> np.ndarray:
+        """Torque that the effect adds along a motion, shape (n, dof)."""
+        law = effect_named(self.effect)
+        torque = law.torque(motion, self.joint, self.values)
+        if torque.ndim == 1:
+            full = np.zeros_like(motion.load)
+            full[:, self.joint] = torque
+            torque = full
+        if self.interval is not None:
+            inside = (motion.time >= self.interval[0]) & (motion.time <= self.interval[1])
+            torque = torque * inside[:, None]
+        return torque
+
+
+def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
+    """Torque of the nominal model (`motion.load`) with effects added, stage by stage, shape (n, dof) [N m].
+
+    Effects of one stage all see the load of the stages before; signals act one after the other.
+    """
+    load = motion.load
+    for stage in STAGES:
+        seen = motion.with_load(load)
+        for effect in (e for e in effects if effect_named(e.effect).stage == stage):
+            load = load + effect.added(motion.with_load(load) if stage == "signal" else seen)
+    return load
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class CorrectedModel:
+    """A nominal model and named effects.
+
+    Args:
+        nominal: the model that was diagnosed.
+        effects: what it lacks.
+        slow: shape (dof,), blurred speed ε of s(v) = tanh(v/ε) [rad/s].
+        source: folder it was read from, "" if none.
+        sha256: checksum of what it was read from.
+    """
+
+    nominal: InverseDynamics | Any
+    effects: tuple[NamedEffect, ...]
+    slow: JointVector
+    source: str = ""
+    sha256: str = ""
+    kind: str = field(default="corrected", init=False)
+
+    def __post_init__(self) -> None:
+        for effect in self.effects:
+            law = effect_named(effect.effect)
+            missing = {p.name for p in law.parameters} - set(effect.values)
+            if missing:
+                raise EffectError(f"{law.name} lacks the parameters {sorted(missing)}", where=self.source or None)
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Joint names in model order."""
+        return tuple(self.nominal.joints)
+
+    @property
+    def n_dof(self) -> int:
+        """Number of joints."""
+        return self.nominal.n_dof
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name in {"nominal", "effects"}:
+            raise AttributeError(name)
+        return getattr(self.nominal, name)  # limits, joint types, regressors of bodies, skeleton
+
+    def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+        """Torque of samples that stand for themselves, shape (n, dof); delays and memory need `torque_along`."""
+        time = UNORDERED * np.arange(len(q))
+        ordered = [e for e in self.effects if effect_named(e.effect).instantaneous]
+        return torque_with(self._motion(time, q, v, a, self.nominal.inverse_dynamics(q, v, a)), ordered)
+
+    def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+        """Torque along a motion on an even clock, with delays and memory, shape (n, dof) [N m]."""
+        load = torque_along(self.nominal, time, q, v, a)
+        return torque_with(self._motion(time, q, v, a, load), self.effects)
+
+    def mass_matrix(self, q: Trajectory) -> MassMatrix:
+        """Joint-space inertia with rotors and changed bodies, shape (n, dof, dof)."""
+        rest = np.zeros_like(q)
+        still = self._of_bodies(q, rest, rest)
+        columns = [self._of_bodies(q, rest, np.broadcast_to(e, q.shape)) - still for e in np.eye(self.n_dof)]
+        return np.stack(columns, axis=2)
+
+    def gravity_torque(self, q: Trajectory) -> Trajectory:
+        """Torque that holds the corrected bodies still against gravity, shape (n, dof)."""
+        return self._of_bodies(q, np.zeros_like(q), np.zeros_like(q))
+
+    def coriolis_torque(self, q: Trajectory, v: Trajectory) -> Trajectory:
+        """Centrifugal and Coriolis torques of the corrected bodies, shape (n, dof)."""
+        rest = np.zeros_like(q)
+        return self._of_bodies(q, np.asarray(v, dtype=float), rest) - self._of_bodies(q, rest, rest)
+
+    def residual_torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+        """What is no part of the bodies: friction, springs, gains, offsets, shape (n, dof)."""
+        return self.inverse_dynamics(q, v, a) - self._of_bodies(q, v, a)
+
+    def forward_dynamics(self, q: Trajectory, v: Trajectory, tau: Trajectory) -> Trajectory:
+        """Acceleration that torque tau gives at (q, v), shape (n, dof) [rad/s²]."""
+        rest = np.zeros_like(q)
+        drift = self.inverse_dynamics(q, v, rest)
+        columns = [self.inverse_dynamics(q, v, np.broadcast_to(e, q.shape)) - drift for e in np.eye(self.n_dof)]
+        return np.linalg.solve(np.stack(columns, axis=2), (tau - drift)[..., None])[..., 0]
+
+    def with_effects(self, effects: Sequence[NamedEffect]) -> CorrectedModel:
+        """The same nominal model with other effects."""
+        return replace(self, effects=tuple(effects))
+
+    def bodies(self) -> Any:
+        """The nominal robot with payload, link changes and tilt written into it; other effects have no place in one."""
+        return apply_to_bodies(self.nominal, self.effects)
+
+    def _of_bodies(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+        """Torque of the rigid part alone, before friction and sensors, shape (n, dof)."""
+        nominal = self.nominal
+        part = getattr(nominal, "_of_bodies", nominal.inverse_dynamics)
+        if part == nominal.inverse_dynamics and hasattr(nominal, "residual_torque"):
+            load = nominal.inverse_dynamics(q, v, a) - nominal.residual_torque(q, v, a)
+        else:
+            load = part(q, v, a)
+        bodies = [e for e in self.effects if effect_named(e.effect).stage == "body"]
+        return torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
+
+    def _motion(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory, load: Trajectory) -> Motion:
+        return Motion(time, q, v, a, load, self.slow, self.nominal)
+
+
+def torque_along(model: Any, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+    """Torque of any model along a motion: with memory where the model has one, sample by sample where not."""
+    if hasattr(model, "torque_along"):
+        return model.torque_along(time, q, v, a)
+    return model.inverse_dynamics(q, v, a)
+
+
+def apply_to_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> Any:
+    """A robot with payload, link changes and tilt of the base in its description.
+
+    Raises:
+        EffectError: the nominal model has no bodies.
+    """
+    if isinstance(nominal, CorrectedModel):
+        return apply_to_bodies(nominal.bodies(), effects)
+    if not hasattr(nominal, "with_inertial_parameters"):
+        raise EffectError("the nominal model has no bodies to write into")
+    parameters, robot = nominal.inertial_parameters().copy(), nominal
+    for effect in effects:
+        law: Any = effect_named(effect.effect)
+        if law.name in ("payload", "link_inertia"):
+            parameters[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
+        if law.name == "gravity_tilt":
+            robot = robot.with_gravity(law.gravity_of(robot.gravity, effect.values))
+    return robot.with_inertial_parameters(parameters)

@@ -1,0 +1,131 @@
+"""A corrected model as a folder: its nominal model, the named effects as JSON, and a robot description written back."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.errors import LagnetError, ModelError
+from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.rigid_body.robot import Robot
+
+FORMAT = 1
+FILE = "corrected.json"
+MOST_BYTES = 10_000_000
+
+
+def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
+    """Writes the folder; it holds all that is needed, nothing points outside it.
+
+    Returns:
+        The folder.
+    """
+    out = Path(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    nominal = _save_nominal(model.nominal, out)
+    text = {
+        "format": FORMAT,
+        "joints": list(model.joints),
+        "nominal": nominal,
+        "slow": [float(s) for s in model.slow],
+        "effects": [
+            {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
+            for e in model.effects
+        ],
+    }
+    (out / FILE).write_text(json.dumps(text, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    if isinstance(model.nominal, Robot):
+        write_description(model.bodies(), out / "robot")
+    return out
+
+
+def _save_nominal(nominal: Any, out: Path) -> dict[str, str]:
+    if isinstance(nominal, Robot):
+        path = write_description(nominal, out / "nominal")
+        return {"kind": "robot", "file": path.name, "sha256": _checksum(path), "from": nominal.source}
+    if isinstance(nominal, CorrectedModel):
+        save_corrected(nominal, out / "nominal")
+        return {"kind": "corrected", "file": "nominal", "sha256": _checksum(out / "nominal" / FILE)}
+    if hasattr(nominal, "save"):
+        nominal.save(out / "nominal")
+        return {"kind": "learned", "file": "nominal", "sha256": ""}
+    raise ModelError(
+        f"a nominal model of type {type(nominal).__name__} cannot be saved", next_step="give it a save method"
+    )
+
+
+def write_description(robot: Robot, stem: Path) -> Path:
+    """Writes a URDF, or MJCF where the arm has what a URDF cannot hold (rotors, another direction of gravity)."""
+    standard = np.allclose(robot.gravity, (0.0, 0.0, -9.81), atol=1e-12)
+    if robot.kind != "mjcf" and standard and not robot.armature.any():
+        path = stem.with_suffix(".urdf")
+        robot.write_urdf(path)
+    else:
+        path = stem.with_suffix(".xml")
+        robot.write_mjcf(path)
+    return path
+
+
+def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> CorrectedModel:
+    """Reads what `save_corrected` wrote.
+
+    Args:
+        load_any: reads the nominal model inside the folder.
+
+    Raises:
+        ModelError: the folder is damaged or from a newer format.
+    """
+    where = Path(folder) / FILE
+    text = _read(where)
+    if text.get("format", 0) > FORMAT:
+        raise ModelError(f"format {text['format']} is newer than {FORMAT}", where=str(where), next_step="update lagnet")
+    try:
+        file = Path(folder) / Path(str(text["nominal"]["file"])).name
+        expected = str(text["nominal"]["sha256"])
+        effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
+        slow = np.array([float(s) for s in text["slow"]])
+        joints = tuple(map(str, text["joints"]))
+    except (KeyError, TypeError, ValueError, LagnetError) as error:
+        raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
+    seen = file if file.is_file() else file / FILE
+    if expected and (not seen.is_file() or _checksum(seen) != expected):
+        raise ModelError("the nominal model beside it was changed or is missing", where=str(seen))
+    nominal = load_any(file)
+    if tuple(nominal.joints) != joints or slow.shape != (len(joints),):
+        raise ModelError("its joints are not those of its nominal model", where=str(where))
+    return CorrectedModel(nominal, effects, slow, source=str(folder), sha256=_checksum(where))
+
+
+def _read(where: Path) -> dict[str, Any]:
+    try:
+        if where.stat().st_size > MOST_BYTES:
+            raise ModelError("is far larger than any corrected model", where=str(where))
+        text = json.loads(where.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ModelError(f"cannot be read ({error})", where=str(where)) from None
+    if not isinstance(text, dict):
+        raise ModelError("holds no object", where=str(where))
+    return text
+
+
+def _effect(entry: dict[str, Any], n_dof: int) -> NamedEffect:
+    law = effect_named(str(entry["effect"]))
+    joint = entry["joint"]
+    if (joint is None) != law.whole_arm or (joint is not None and not 0 <= int(joint) < n_dof):
+        raise ValueError(f"{law.name} at joint {joint}")
+    values = {p.name: float(entry["values"][p.name]) for p in law.parameters}
+    if not all(map(math.isfinite, values.values())):
+        raise ValueError(f"{law.name} has a parameter that is not finite")
+    interval = entry.get("interval")
+    return NamedEffect(law.name, joint, values, None if interval is None else (float(interval[0]), float(interval[1])))
+
+
+def _checksum(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,38 @@
+"""Any model by what the user calls it: a robot's name or file, or a folder that `train` or `diagnose` wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from lagnet.errors import ModelError
+from lagnet.models import corrected_files
+
+
+def load_any(spec: str | Path) -> Any:
+    """A Robot, a learned model or a corrected model.
+
+    Args:
+        spec: URDF or MJCF path, name of example-robot-data, or folder written by `train` or `diagnose`.
+
+    Raises:
+        RobotError: no such robot, or a description that cannot be read.
+        ModelError: a folder that holds no model, or a damaged one.
+    """
+    path = Path(spec)
+    if not path.is_dir():
+        from lagnet.rigid_body.robot import load_description
+
+        return load_description(spec)
+    for folder in (path, path / "corrected", path / "model"):
+        if (folder / corrected_files.FILE).is_file():
+            return corrected_files.load_corrected(folder, load_any)
+        if (folder / "model.json").is_file():
+            from lagnet.models.saving import load_model
+
+            return load_model(folder)
+    raise ModelError(
+        "the folder holds neither a trained nor a corrected model",
+        where=str(path),
+        next_step="give a folder written by `lagnet train` or `lagnet diagnose`, or a URDF or MJCF file",
+    )
