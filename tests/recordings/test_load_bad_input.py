@@ -6,6 +6,7 @@ import gzip
 import io
 import struct
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -150,7 +151,7 @@ def test_refuses_more_than_fits_in_memory(tmp_path: Path, monkeypatch: pytest.Mo
         path = f"lagnet.recordings.readers.{module}.MAX_BYTES"
         monkeypatch.setattr(path, 10_000, raising=False)
     bomb = save(tmp_path, gzip.compress(b"time,q_0,tau_0\n" + b"0,0,0\n" * 100_000), "bomb.csv.gz")
-    with pytest.raises(RecordingError, match="more than .* after decompression; split it"):
+    with pytest.raises(RecordingError, match=r"more than .* after decompression; split it"):
         load_recording(bomb)
     np.savez_compressed(tmp_path / "bomb.npz", time=np.zeros(10_000), q=np.zeros(10_000), tau=np.zeros(10_000))
     with pytest.raises(RecordingError, match="after decompression"):
@@ -213,15 +214,13 @@ def test_a_file_cut_or_corrupted_anywhere_is_refused_or_read_never_a_crash(suffi
         damaged = bytearray(whole[: random.integers(1, len(whole) + 1)])
         damaged[random.integers(len(damaged))] ^= int(random.integers(1, 256))
         path.write_bytes(bytes(damaged))
-        try:
-            load_recording(path, n_dof=2)
-        except LagnetError as refusal:
-            assert "\n" not in str(refusal)
+        with suppress(LagnetError):
+            assert load_recording(path, n_dof=2).q.shape[1] == 2
 
 
 def test_refuses_matlab_7_3(tmp_path: Path) -> None:
     header = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + struct.pack("<H", 0x0200) + b"IM"
-    with pytest.raises(RecordingError, match="MATLAB 7.3.*-v7"):
+    with pytest.raises(RecordingError, match=r"MATLAB 7.3.*-v7"):
         load_recording(save(tmp_path, header.ljust(512, b"\0") + b"\x89HDF\r\n\x1a\n", "run.mat"))
 
 

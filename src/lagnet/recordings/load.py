@@ -79,6 +79,7 @@ def load_recording(
     source, sha256 = open_source(path)
     layout = find_layout(Header(source.names, source.joints, column_map, where), facts.joints, facts.n_dof)
     table = source.read(layout.numbers, layout.trajectory)
+    del source  # the file's bytes are needed no more: half of the memory of a long recording
     return _Assembly(table, layout, column_map, facts, where).recording(sha256)
 
 
@@ -163,8 +164,9 @@ class _Assembly:
         clock.refuse_backward(time, motions.index, self.table.labels is not None, rows, self.where)
         keep, repeats = clock.first_of_repeats(time, motions.index, rows)
         self._refuse_few(int(keep.sum()))
-        signals = {kind: self._signal(kind)[keep] for kind in layout.signals}
-        time, index = time[keep], motions.index[keep]
+        kept = slice(None) if keep.all() else keep
+        signals = {kind: self._signal(kind)[kept] for kind in layout.signals}
+        time, index = time[kept], motions.index[kept]
         self._refuse_wrong_units(time, index, signals)
         warnings = (*self.table.warnings, *layout.warnings, *repeats, *self._short_motions(index, motions.names))
         return Recording(

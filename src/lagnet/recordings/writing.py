@@ -78,7 +78,7 @@ def _csv(recording: Recording) -> bytes:
 
 
 def _csv_gz(recording: Recording) -> bytes:
-    return gzip.compress(_csv(recording), compresslevel=6, mtime=0)
+    return gzip.compress(_csv(recording), compresslevel=3, mtime=0)
 
 
 def _parquet(recording: Recording) -> bytes:

@@ -99,9 +99,10 @@ class CsvSource:
         if cut_short:
             keep[np.flatnonzero(keep)[-1]] = False
         warnings = self._tell(damaged, empty, cut_short, numbers_of)
+        kept = slice(None) if keep.all() else keep
         return Table(
-            {name: column[keep] for name, column in values.items()},
-            None if labels is None else as_labels(labels[keep]),
+            {name: column[kept] for name, column in values.items()},
+            None if labels is None else as_labels(labels[kept]),
             numbers_of.without(np.flatnonzero(~keep)),
             warnings,
         )
