@@ -1,0 +1,30 @@
+"""The motion of a recording at its own samples: as recorded where all of it was, else smoothed and differentiated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.errors import RecordingError
+from lagnet.recordings.recording import Recording
+from lagnet.types import Trajectory
+
+
+def motion_of(recording: Recording) -> tuple[Trajectory, Trajectory, Trajectory, str]:
+    """q, v, a at every sample, each of shape (n, dof), and where they come from: "recorded" or "differentiated".
+
+    Raises:
+        RecordingError: no stretch is long enough to differentiate.
+    """
+    if recording.v is not None and recording.a is not None:
+        return recording.q, recording.v, recording.a, "recorded"
+    from lagnet.recordings.conditioning import condition, motion_at_samples
+
+    conditioned = condition([recording])
+    if not conditioned.stretches:
+        raise RecordingError(
+            f"{len(recording)} samples are too few to differentiate",
+            where=recording.path or None,
+            next_step="record longer, or give columns v_i and a_i",
+        )
+    q, v, a = motion_at_samples(recording, conditioned, 0)
+    return np.asarray(q), np.asarray(v), np.asarray(a), "differentiated"
