@@ -1,0 +1,72 @@
+"""Work of the torques equals the change of kinetic and potential energy along smooth random motions."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize
+
+from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.energy import energy_scale, kinetic_energy
+from lagnet.plausibility.motions import DURATION, SmoothMotion, dimension, motions
+from lagnet.plausibility.subject import Subject
+
+MOTIONS, TRIES = 8, 12
+
+
+class EnergyAlongMotion(Check):
+    """Potential energy is the model's own; without one it is the work against g along the motion."""
+
+    name = "energy_along_motion"
+    title = "work equals the change of kinetic and potential energy"
+    meaning = "The model makes or loses energy in motion although nothing rubs."
+    unit = "1/s"
+    justification = "Exact in mechanics; 1e-7 of the work of typical torques a second is the error of integration."
+
+    def limit(self, subject: Subject) -> float:
+        return max(1e-7, 1e2 * subject.rounding)
+
+    def find(self, subject: Subject) -> Finding:
+        rng = np.random.default_rng([subject.seed, 7])
+        points = rng.uniform(-1, 1, (MOTIONS, dimension(subject)))
+        drifts = self._drift(subject, points).max(axis=1)
+        start = points[int(np.argmax(drifts))]
+        best = minimize(
+            lambda x: -float(self._drift(subject, np.clip(x[None], -1, 1)).max()),
+            start,
+            method="Nelder-Mead",
+            options={"maxfev": TRIES, "initial_simplex": _simplex(start, rng)},
+        )
+        point = np.clip(best.x, -1, 1) if -best.fun > drifts.max() else start
+        drift = self._drift(subject, point[None])[0]
+        panel = int(np.argmax(drift))
+        motion = motions(subject, point[None])
+        where = {name: ends[0, panel].tolist() for name, ends in zip("qv", motion.ends, strict=True)}
+        where["time"] = panel * DURATION / (drift.size - 1)
+        return Finding(float(drift[panel]), where, "energy drifts by a share of the work of typical torques a second")
+
+    @staticmethod
+    def _drift(subject: Subject, points: np.ndarray) -> np.ndarray:
+        """Energy gained beyond the work done until the end of each panel, over work and time, (m, panels + 1)."""
+        motion = motions(subject, points)
+        m, n, dof = motion.q.shape
+        q, v, a = (x.reshape(-1, dof) for x in (motion.q, motion.v, motion.a))
+        worked = motion.integrals(np.sum(v * subject.mechanical_torque(q, v, a), axis=1).reshape(m, n))
+        at = [x.reshape(-1, dof) for x in motion.ends]
+        energy = kinetic_energy(subject, *at).reshape(m, -1)
+        energy = energy - energy[:, :1] + _lifted(subject, motion)
+        return np.abs(energy - worked) / (energy_scale(subject) * DURATION)
+
+
+def _lifted(subject: Subject, motion: SmoothMotion) -> np.ndarray:
+    """Potential energy gained until the end of each panel, shape (m, panels + 1)."""
+    m, n, dof = motion.q.shape
+    if subject.offers("potential_energy"):
+        potential = subject.call("potential_energy", motion.ends[0].reshape(-1, dof)).reshape(m, -1)
+        return potential - potential[:, :1]
+    g = subject.gravity_torque(motion.q.reshape(-1, dof)).reshape(m, n, dof)
+    return motion.integrals(np.sum(g * motion.v, axis=2))
+
+
+def _simplex(start: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A simplex around the worst motion: random directions, as only a few tries are made."""
+    return np.concatenate([start[None], start + 0.3 * rng.standard_normal((start.size, start.size))])

@@ -1,0 +1,51 @@
+"""The answer for one configuration is the same alone, in a batch, and when asked again."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.subject import Subject
+
+SAMPLES = 32
+
+
+class IndependentSamples(Check):
+    """Compares each of the four calls on single rows and on a shuffled batch."""
+
+    name = "independent_samples"
+    title = "a sample's torque depends on that sample alone"
+    meaning = "A model whose answer depends on its neighbours in a batch, or on chance, is no function of the motion."
+    justification = "Batched and single calls may round differently, a thousand roundings at most."
+
+    def limit(self, subject: Subject) -> float:
+        return subject.at_least_rounding(1e-9)
+
+    def find(self, subject: Subject) -> Finding:
+        q, v, a = subject.random(SAMPLES, salt=4)
+        order = np.random.default_rng(subject.seed).permutation(SAMPLES)
+        missed = np.zeros(SAMPLES)
+        for name, arrays, scale in self._calls(subject, q, v, a):
+            call = getattr(subject.model, name)
+            batch = np.empty_like(first := subject.call(name, *arrays))
+            batch[order] = subject.call(name, *(array[order] for array in arrays))
+            alone = np.stack([np.asarray(call(*(x[k : k + 1] for x in arrays)), dtype=float)[0] for k in range(8)])
+            missed = np.maximum(missed, self._size(batch - first, scale))
+            missed[:8] = np.maximum(missed[:8], self._size(alone - first[:8], scale))
+        k = int(np.argmax(missed))
+        where = {"q": q[k].tolist(), "v": v[k].tolist(), "a": a[k].tolist()}
+        return Finding(
+            float(missed[k]), where, "the same sample alone or among others differs by a share of its torque"
+        )
+
+    @staticmethod
+    def _calls(subject: Subject, q: np.ndarray, v: np.ndarray, a: np.ndarray):
+        tau, inertia = subject.torque_scale, subject.inertia_scale
+        yield "inverse_dynamics", (q, v, a), tau
+        yield "mass_matrix", (q,), np.sqrt(np.outer(inertia, inertia))
+        yield "coriolis_torque", (q, v), tau
+        yield "gravity_torque", (q,), tau
+
+    @staticmethod
+    def _size(difference: np.ndarray, scale: np.ndarray) -> np.ndarray:
+        return np.abs(difference / scale).reshape(len(difference), -1).max(axis=1)
