@@ -19,9 +19,9 @@ import pybullet
 from scipy.spatial.transform import Rotation
 
 GRAVITY = 9.81  # [m/s²], what Pinocchio assumes too
-LOCKED = {  # arms whose gripper joints are fixed in the description that the diagnosis is given
-    "panda_arm": ("panda", ("panda_finger_joint1", "panda_finger_joint2")),
-    "z1_arm": ("z1", ("jointGripper",)),
+LOCKED = {  # gripper joints that lagnet holds at zero in the arms of these names
+    "panda": ("panda_finger_joint1", "panda_finger_joint2"),
+    "z1": ("jointGripper",),
 }
 
 
@@ -72,8 +72,8 @@ def _shipped(robot: str) -> tuple[str, tuple[str, ...]]:
 
 def description(robot: str) -> tuple[ElementTree.Element, tuple[str, ...]]:
     """The URDF that the diagnosis may see, and its joint names in Pinocchio's order."""
-    shipped, locked = LOCKED.get(robot, (robot, ()))
-    text, names = _shipped(shipped)
+    locked = LOCKED.get(robot, ())
+    text, names = _shipped(robot)
     root = ElementTree.fromstring(text)
     for joint in root.iter("joint"):
         if joint.get("name") in locked:
@@ -91,15 +91,6 @@ def joint_limits(robot: str) -> tuple[JointLimits, ...]:
     root, names = description(robot)
     found = {joint.get("name"): joint for joint in root.iter("joint") if joint.get("type")}
     return tuple(_limits_of(found[name]) for name in names)
-
-
-def nominal(robot: str) -> tuple[str, bytes | None]:
-    """What names the nominal model, and its file where it is no shipped robot."""
-    if robot not in LOCKED:
-        return robot, None
-    root, _ = description(robot)
-    _strip_shapes(root)
-    return "nominal.urdf", ElementTree.tostring(root)
 
 
 def _limits_of(joint: ElementTree.Element) -> JointLimits:

@@ -10,7 +10,7 @@ from validation.plants.body import arm_joints, joint_names
 from validation.plants.sizes import Scale, scale_of
 from validation.plants.spec import Hidden, PlantSpec
 
-ROBOTS = ("ur5", "ur10", "panda_arm", "xarm7", "kinova", "z1_arm")
+ROBOTS = ("ur5", "ur10", "panda", "xarm7", "kinova", "z1")
 FRICTION_LEVELS = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "torque_offset"}
 Draw = Callable[[Scale, int, float, np.random.Generator], dict[str, float]]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from validation.plants.body import LOCKED, nominal
 from validation.plants.draw import FIRST_SET, ROBOTS, draw_plant
 from validation.plants.simulate import simulate_plant
 from validation.plants.spec import PlantSpec
@@ -32,10 +31,7 @@ def make(specs: list[PlantSpec], out: Path) -> None:
     for spec in specs:
         folder = out / spec.name
         simulate_plant(spec, folder / "recordings")
-        name, file = nominal(spec.robot)
-        (folder / "nominal.txt").write_text(name + "\n")
-        if file is not None:
-            (folder / name).write_bytes(file)
+        (folder / "nominal.txt").write_text(spec.robot + "\n")
         print(spec.name, flush=True)
 
 
@@ -52,8 +48,7 @@ def main() -> None:
     parser.add_argument("--noise", type=float, default=0.01, help="of each joint's torque rms")
     given = parser.parse_args()
     kinds, robots = given.kinds.split(","), given.robots.split(",")
-    shipped = {arm for arm, _ in LOCKED.values()}
-    unknown = (set(kinds) - set(FIRST_SET)) | (set(robots) - set(ROBOTS) - shipped)
+    unknown = (set(kinds) - set(FIRST_SET)) | (set(robots) - set(ROBOTS))
     if unknown:
         parser.error(f"unknown {sorted(unknown)}; kinds: {', '.join(FIRST_SET)}; robots: {', '.join(ROBOTS)}")
     numbers = range(given.first, given.first + given.count)
