@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import re
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.inertia import is_physically_consistent
+from lagnet.rigid_body.inertia import is_physically_consistent, principal_moments
 from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import load_description
@@ -123,6 +125,14 @@ def test_unknown_names_show_the_choices(name):
         assert "did you mean" in str(caught.value)
 
 
+def test_a_folder_of_the_same_name_does_not_hide_a_robot(tmp_path, monkeypatch):
+    (tmp_path / "ur5").mkdir()
+    (tmp_path / "mine").write_text(random_arm(2, 0)._description.file.text.decode())
+    monkeypatch.chdir(tmp_path)
+    assert load_description("ur5").kind == "named_robot"
+    assert load_description("mine").kind == "urdf"
+
+
 def test_floating_robots_are_refused_by_name():
     with pytest.raises(RobotError, match="floating base"):
         load_description("anymal")
@@ -206,3 +216,21 @@ def test_copies_and_threads_give_the_same_torques():
     with ThreadPoolExecutor(4) as pool:
         results = list(pool.map(lambda _: robot.inverse_dynamics(q, v, a), range(8)))
     assert all(np.array_equal(result, expected) for result in results)
+
+
+def test_the_documented_table_is_what_loads():
+    text = (Path(__file__).parents[2] / "docs" / "rigid_body.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| (\d+) \| ([\w, ]+) \|", text, flags=re.MULTILINE)
+    assert [name for name, *_ in rows] == list(named_robots())
+    for name, n_dof, kinds in rows:
+        types = load_description(name).joint_types
+        counts = [f"{types.count(k)} {k}" for k in ("revolute", "continuous", "prismatic") if k in types]
+        assert (int(n_dof), kinds) == (len(types), ", ".join(counts)), name
+
+
+def test_documented_links_break_the_triangle_and_no_moving_body_does():
+    broken = dict(load_description("allegro_left_hand").link_inertials)["link_15.0"]
+    assert principal_moments(broken) == pytest.approx([8.237e-6, 2.786e-5, 4.450e-5], rel=1e-3)
+    assert not is_physically_consistent(broken, margin=-1e-9)
+    for name in named_robots():
+        assert is_physically_consistent(load_description(name).inertial_parameters()).all(), name

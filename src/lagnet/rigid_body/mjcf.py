@@ -38,7 +38,9 @@ def read_mjcf(file: XmlFile) -> Description:
     types = tuple(_type(model, i) for i in range(1, model.njoints))
     _check_finite(model, where)
     warnings += _friction_warnings(model) + mass_warnings(model, where)
-    return Description(model, types, moving_bodies(model), (), "mjcf", where, file, (), tuple(warnings))
+    links = moving_bodies(model)
+    inertials = tuple((link, model.inertias[i + 1].toDynamicParameters()) for i, link in enumerate(links))
+    return Description(model, types, links, inertials, "mjcf", where, file, (), tuple(warnings))
 
 
 def _build(root: Element, where: str) -> pin.Model:

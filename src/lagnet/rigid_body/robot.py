@@ -15,7 +15,7 @@ from lagnet.rigid_body import batches
 from lagnet.rigid_body.description import Description
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.mjcf import read_mjcf
-from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path
+from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
 from lagnet.rigid_body.urdf import read_urdf
 from lagnet.rigid_body.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.xml_files import read_xml
@@ -34,8 +34,8 @@ def load_description(spec: str | Path) -> Robot:
         RobotError: unknown name, unreadable file, or not a fixed-base arm of one-degree-of-freedom joints.
     """
     path, text = Path(spec), str(spec)
-    looks_like_a_path = isinstance(spec, Path) or path.suffix != "" or len(path.parts) > 1 or path.exists()
-    if not looks_like_a_path:
+    looks_like_a_path = isinstance(spec, Path) or path.suffix != "" or len(path.parts) > 1
+    if not looks_like_a_path and (text in named_robots() or not path.exists()):  # a folder "ur5" does not hide the UR-5
         file = read_xml(named_robot_path(text))
         return Robot(read_urdf(file, "named_robot", text, HELD_JOINTS.get(text, ())))
     if path.suffix.lower() == ".xacro":
@@ -60,7 +60,7 @@ class Robot:
         gravity: shape (3,), in the frame of the base [m/s²].
         kind: 'urdf', 'mjcf' or 'named_robot'.
         source: the name or path that was asked for; sha256: checksum of the file behind it.
-        link_inertials: (link name, ten parameters in the link's frame) as the file gives them, before merging.
+        link_inertials: (link name, ten parameters in the link's frame) as a URDF gives them, before merging.
         warnings: what the reader noticed and survived.
     """
 
