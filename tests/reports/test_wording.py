@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
 
-from lagnet.reports.wording import breakable, effect_words, listed, number, percent, with_interval, wrapped
+from lagnet.reports.wording import breakable, effect_words, file_name, listed, number, percent, with_interval, wrapped
 
 
 @pytest.mark.parametrize(
@@ -80,3 +80,11 @@ def test_lists_and_names():
     assert [listed([]), listed(["a"]), listed(["a", "b"])] == ["", "a", "a and b"]
     assert listed(["a", "b", "c"]) == "a, b and c"
     assert effect_words("stribeck_friction") == "Stribeck friction"
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [("a/b.csv", "b.csv"), ("C:\\a\\b.csv", "b.csv"), ("folder/", "folder"), ("b", "b"), ("/", "/"), ("", "")],
+)
+def test_file_name(path, name):
+    assert file_name(path) == name

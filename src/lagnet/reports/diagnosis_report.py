@@ -21,7 +21,7 @@ from lagnet.reports.sections import (
     unexplained,
     where,
 )
-from lagnet.reports.wording import counted
+from lagnet.reports.wording import counted, file_name
 
 # In order of reading. A new section is one file beside these, with its template, and one line here.
 SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
@@ -59,6 +59,6 @@ def _subtitle(verdict: Mapping[str, Any]) -> str:
     held_out = [recording for recording in recordings if recording["role"] == "holdout"]
     seconds = sum(recording["duration_s"] for recording in recordings)
     return (
-        f"{verdict['nominal']['source']} against {counted(len(recordings), 'recording')} "
+        f"{file_name(verdict['nominal']['source'])} against {counted(len(recordings), 'recording')} "
         f"({seconds:.0f} s, {len(held_out)} held out)"
     )

@@ -9,7 +9,7 @@ import numpy as np
 from lagnet.diagnosis.evidence import HeldOutSeries, JointEvidence
 from lagnet.reports.decimation import broken, chosen_samples, cloud_budget, end_to_end, scattered, series_budget
 from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed, plain
-from lagnet.reports.wording import effect_words, listed
+from lagnet.reports.wording import effect_words, file_name, listed
 
 WINDOW, WINDOW_SHOWN_WHOLE = 20.0, 30.0  # seconds shown at first of a recording longer than the second figure
 MOTIONS_MARKED = 12  # more starts of motions than this would only clutter the plot
@@ -134,7 +134,7 @@ def _names(series: HeldOutSeries, starts: np.ndarray) -> list[dict[str, Any]]:
     return [
         {
             "x": float(t), "y": 1, "yref": "paper", "yanchor": "bottom", "xanchor": "left", "showarrow": False,
-            "text": plain(_shortened(name)), "font": {"size": 11, "color": colour("quiet")},
+            "text": plain(_shortened(file_name(name))), "font": {"size": 11, "color": colour("quiet")},
         }
         for t, name in zip(starts, series.names, strict=True)
     ]  # fmt: skip

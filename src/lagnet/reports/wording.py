@@ -64,6 +64,11 @@ def counted(count: int, noun: str, plural: str | None = None) -> str:
     return f"{count} {noun if count == 1 else plural or noun + 's'}"
 
 
+def file_name(path: str) -> str:
+    """The last part of a path, of either kind of slash."""
+    return re.split(r"[\\/]", path.rstrip("\\/"))[-1] or path
+
+
 def breakable(name: str) -> Markup:
     """A long name that may break behind its underscores; short ones stay whole, so that they can be searched for."""
     if len(name) <= LONGEST_WHOLE_NAME:

@@ -93,8 +93,24 @@ def test_verdict_opens_the_page(six, tmp_path):
     page = write_report(six.verdict, six.evidence, tmp_path / "report.html").read_text(encoding="utf-8")
     lead = re.search(r'<p class="lead">(.*?)</p>', page)[1]
     assert lead.startswith("The arm differs from the model on 4 of 6 joints. Left out: viscous friction")
-    assert "payload or torque gain on the whole arm" in lead
+    assert "viscous friction and Coulomb friction on each of these" in lead
+    assert "payload (tied with torque gain) on the whole arm" in lead
     assert re.search(r"Held-out torque error falls from \d+ % to [\d.]+ %", lead)
+
+
+def test_a_tie_on_one_joint_is_not_said_of_the_others(six, tmp_path):
+    verdict = copy.deepcopy(six.verdict)
+    verdict["effects"][0] |= {"status": "tied", "tied_with": ["quadratic_drag"]}
+    page = write_report(verdict, six.evidence, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "viscous friction (on shoulder_pan tied with quadratic drag)" in page
+
+
+def test_paths_are_shown_by_their_last_part_in_the_heading(six, tmp_path):
+    verdict = copy.deepcopy(six.verdict)
+    verdict["nominal"]["source"] = r"C:\robots\arm.urdf"
+    page = write_report(verdict, six.evidence, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert '<p class="subtitle">arm.urdf against 4 recordings (240 s, 2 held out)</p>' in page
+    assert r"C:\robots\arm.urdf" in page
 
 
 def test_few_effects_are_given_with_their_values(tmp_path, case):

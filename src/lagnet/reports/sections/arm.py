@@ -13,7 +13,7 @@ from lagnet.reports.wording import percent, wrapped
 AGREES = "#9db8b0"
 # (upper limit of the nMSE, fill): light yellow to dark red, ordered also without hue
 SCALE = ((0.01, "#ffffb2"), (0.03, "#fecc5c"), (0.1, "#fd8d3c"), (0.3, "#f03b20"), (float("inf"), "#a50026"))
-LABEL_WIDTH = 18  # characters in a line
+LABEL_WIDTH = 20  # characters in a line
 
 
 def build(findings: Findings) -> Section:

@@ -15,6 +15,7 @@ KINDS = (
     ("nmse_named", "with the named physics", "corrected"),
     ("nmse_named_and_residual_network", "with a residual network too", "law"),
 )
+NAME_WIDTH = 20  # characters in a line
 SMALLEST = 1e-6  # a bar on a logarithmic axis cannot reach zero
 
 
@@ -31,22 +32,25 @@ def build(findings: Findings) -> Section | None:
 
 
 def _figure(fits: list[dict[str, Any]], kinds: list[tuple[str, str, str]]) -> Figure:
-    names = ["<br>".join(plain(line) for line in wrapped(fit["joint"], 16)) for fit in fits]
+    names = ["<br>".join(plain(line) for line in wrapped(fit["joint"], NAME_WIDTH)) for fit in fits]
     traces = [
         {**_bars(names, [fit[key] for fit in fits], words, role), "legendrank": rank}
         for rank, (key, words, role) in enumerate(kinds)
     ]
-    traces.append(_floor(names, [fit["nmse_noise_floor"] for fit in fits]))
-    values = [fit[key] for fit in fits for key in (*(kind[0] for kind in kinds), "nmse_noise_floor")]
+    bars = [fit[key] for fit in fits for key, *_ in kinds if fit[key] is not None]
+    lowest = max(min(bars) / 10, SMALLEST)  # a noise floor far below every bar must not crowd the bars
+    traces.append(_floor(names, [fit["nmse_noise_floor"] for fit in fits], lowest))
+    floors = [max(fit["nmse_noise_floor"], lowest) for fit in fits]
     layout = {
         "barmode": "group",
         "bargap": 0.28,
         "yaxis": names_axis(autorange="reversed"),
-        "xaxis": axis("torque error (nMSE), logarithmic", "–", **_range(values)),
+        "xaxis": axis("torque error (nMSE), logarithmic", "–", **_range([*bars, *floors])),
         "margin": {"t": 84},
     }
-    lines = sum(max(len(wrapped(fit["joint"], 16)) * 16 + 8, 18 * len(kinds) + 14) for fit in fits)
-    return Figure("fit-bars", traces, "Held-out torque error of each joint before and after", layout, 170 + lines)
+    lines = max(len(wrapped(fit["joint"], NAME_WIDTH)) for fit in fits)
+    height = 170 + len(fits) * max(16 * lines + 8, 18 * len(kinds) + 14)
+    return Figure("fit-bars", traces, "Held-out torque error of each joint before and after", layout, height)
 
 
 def _bars(names: list[str], values: list[float | None], words: str, role: str) -> Trace:
@@ -58,18 +62,18 @@ def _bars(names: list[str], values: list[float | None], words: str, role: str) -
     }  # fmt: skip
 
 
-def _floor(names: list[str], values: list[float]) -> Trace:
+def _floor(names: list[str], values: list[float], lowest: float) -> Trace:
     return {
         "type": "scatter", "mode": "markers", "y": names, "name": "noise floor",
-        "x": [max(value, SMALLEST) for value in values], "text": [percent(value) for value in values],
+        "x": [max(value, lowest) for value in values], "text": [percent(value) for value in values],
         "marker": {"symbol": "line-ns", "size": 22, "line": {"width": 3, "color": colour("ink")}},
         "hovertemplate": "%{y}: %{text}",
     }  # fmt: skip
 
 
-def _range(values: list[float | None]) -> dict[str, Any]:
+def _range(values: list[float]) -> dict[str, Any]:
     """A logarithmic axis on which the shortest bar still has room for its number."""
-    present = [math.log10(max(value, SMALLEST)) for value in values if value is not None]
+    present = [math.log10(max(value, SMALLEST)) for value in values]
     high = max(max(present) + 0.1, 0.05)
     low = min(present) - max(0.4 * (high - min(present)), 0.3)
     ticks = list(range(math.ceil(low), math.floor(high) + 1))

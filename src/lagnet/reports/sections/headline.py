@@ -21,7 +21,7 @@ def build(findings: Findings) -> Section:
         sentences=_sentences(findings),
         tiles=_tiles(findings),
         causes=_causes(findings),
-        remainder=[findings.unexplained(joint) for joint in _remaining(findings)],
+        remainder=_remainder(findings),
         n_abstentions=len(findings.verdict["abstentions"]),
         warnings=findings.verdict["warnings"],
     )
@@ -54,13 +54,25 @@ def _unjudged(findings: Findings) -> list[str]:
 def _left_out(findings: Findings) -> str:
     """Effects with their values if there are few, else gathered by the joints they share."""
     if len(findings.effects) <= 3:
-        parts = [f"{_name(e)} on {place(e['joint'])} ({', '.join(_values(e))})" for e in findings.effects]
+        parts = [
+            f"{effect_words(e['effect'])} on {place(e['joint'])} ({', '.join(_values(e))}{_ties([e], ', ')})"
+            for e in findings.effects
+        ]
         return f"Left out: {listed(parts)}."
     by_places: dict[tuple[str | None, ...], list[str]] = {}
-    for words, effects in _by_name(findings).items():
-        by_places.setdefault(tuple(effect["joint"] for effect in effects), []).append(words)
+    for name, effects in _by_name(findings).items():
+        places = tuple(effect["joint"] for effect in effects)
+        by_places.setdefault(places, []).append(effect_words(name) + (f" ({_ties(effects)})" if _ties(effects) else ""))
     parts = [f"{listed(words)} on {_on(places, findings)}" for places, words in by_places.items()]
     return f"Left out: {'; '.join(parts)}."
+
+
+def _ties(effects: list[dict[str, Any]], before: str = "") -> str:
+    """The rivals of those effects that are tied, and where, if not all are."""
+    tied = [effect for effect in effects if effect["tied_with"]]
+    rivals = dict.fromkeys(effect_words(rival) for effect in tied for rival in effect["tied_with"])
+    where = f"on {listed([place(e['joint']) for e in tied])} " if len(tied) < len(effects) else ""
+    return f"{before}{where}tied with {listed(list(rivals))}" if tied else ""
 
 
 def _improvement(findings: Findings) -> str:
@@ -78,14 +90,20 @@ def _tiles(findings: Findings) -> list[dict[str, str]]:
     """Four figures to remember."""
     named = sum(effect["status"] == "named" for effect in findings.effects)
     tied = len(findings.effects) - named
-    remaining = len(_remaining(findings))
-    keep = "joint keeps" if remaining == 1 else "joints keep"
     tiles = [
         _tile(f"{len(findings.differing)} of {len(findings.joints)}", "joints differ from the model"),
         _tile(str(named), f"effect{'' if named == 1 else 's'} named" + (f", {tied} tied with rivals" if tied else "")),
-        _tile(str(remaining), f"{keep} something unexplained"),
+        *_gain(findings),
     ]
-    return tiles[:2] + _gain(findings) + tiles[2:]
+    remainder = _remainder(findings)
+    if not remainder:
+        return [*tiles, _tile("0", "joints keep something unexplained")]
+    most = remainder[0]
+    rest = f", the most of {counted(len(remainder), 'joint')}" if len(remainder) > 1 else ""
+    return [
+        *tiles,
+        _tile(percent(most["share_of_mismatch"]), "of the mismatch stays unexplained on", most["joint"], rest),
+    ]
 
 
 def _tile(value: str, words: str, joint: str = "", rest: str = "") -> dict[str, str]:
@@ -108,27 +126,24 @@ def _gain(findings: Findings) -> list[dict[str, str]]:
 
 def _causes(findings: Findings) -> list[dict[str, Any]]:
     causes = []
-    for words, effects in _by_name(findings).items():
-        entries = [{"place": place(effect["joint"]), "values": _values(effect)} for effect in effects]
-        cause = {"words": words, "name": effects[0]["effect"], "tied": effects[0]["tied_with"], "entries": entries}
-        causes.append({**cause, "advice": [effect["explanation"] for effect in effects if effect["joint"] is None]})
+    for name, effects in _by_name(findings).items():
+        entries = [{"place": place(e["joint"]), "values": _values(e), "tied_with": e["tied_with"]} for e in effects]
+        advice = [effect["explanation"] for effect in effects if effect["joint"] is None]
+        causes.append({"name": name, "entries": entries, "advice": advice})
     return causes
 
 
 def _by_name(findings: Findings) -> dict[str, list[dict[str, Any]]]:
+    """Effects of one kind together, the strongest kind first, each in the order of the joints."""
     groups: dict[str, list[dict[str, Any]]] = {}
     for effect in findings.effects:
-        groups.setdefault(_name(effect), []).append(effect)
-    return groups
-
-
-def _name(effect: dict[str, Any]) -> str:
-    """The effect's name in words, with those of the rivals that explain as much."""
-    return " or ".join(effect_words(name) for name in (effect["effect"], *effect["tied_with"]))
+        groups.setdefault(effect["effect"], []).append(effect)
+    order = {joint: index for index, joint in enumerate(findings.joints)}
+    return {name: sorted(group, key=lambda e: order.get(e["joint"], -1)) for name, group in groups.items()}
 
 
 def _on(places: tuple[str | None, ...], findings: Findings) -> str:
-    if len(places) > 2 and sorted(map(str, places)) == sorted(findings.differing):
+    if len(places) > 2 and set(places) == set(findings.differing):
         return "each of these"
     return listed([place(joint) for joint in places]) if len(places) < 3 else counted(len(places), "joint")
 
@@ -146,5 +161,7 @@ def _values(effect: dict[str, Any]) -> list[str]:
     return [*words, "…"] if len(parameters) > SHOWN_PARAMETERS else words
 
 
-def _remaining(findings: Findings) -> list[str]:
-    return [entry["joint"] for entry in findings.verdict["unexplained"] if entry["above_noise"]]
+def _remainder(findings: Findings) -> list[dict[str, Any]]:
+    """What is left above the noise, the largest share first."""
+    left = [entry for entry in findings.verdict["unexplained"] if entry["above_noise"]]
+    return sorted(left, key=lambda entry: -entry["share_of_mismatch"])

@@ -59,12 +59,12 @@ def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
         "bargap": 0.3,
         "margin": {"t": 40},
     }
-    height = 120 + sum(16 * len(lines) + 12 for lines in words)
+    height = 120 + len(words) * (16 * max(map(len, words)) + 12)
     return Figure("rival-bars", traces, "log10 odds of each effect over its rivals", layout, height)
 
 
 def _words(contest: Contest, rival: str, _: float) -> list[str]:
-    effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 24)
+    effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 30)
     return [*effect, f"over {effect_words(rival)}"]
 
 
