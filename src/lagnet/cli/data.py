@@ -7,10 +7,11 @@ from pathlib import Path
 
 import typer
 
+from lagnet.cli.main import COMMANDS
 from lagnet.recordings.datasets import data_sets, fetch
 from lagnet.recordings.derived import RECIPES
 
-app = typer.Typer(help="List and fetch the public data sets that tests and studies use.", no_args_is_help=True)
+app = typer.Typer(help=COMMANDS["data"], no_args_is_help=True, add_completion=False)
 
 
 @app.command("list")

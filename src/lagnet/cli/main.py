@@ -1,9 +1,10 @@
 """The `lagnet` command: names every subcommand, imports only the one that is called, and turns errors into exit codes.
 
-Exit codes: 0 done; 1 a check that the user asked for failed (`raise typer.Exit(1)`); 2 bad input or usage; 3 interrupted.
+Exit codes: 0 done; 1 a check that the user asked for failed (`raise typer.Exit(1)`); 2 bad input or usage;
+3 interrupted.
 
-A subcommand is one file `lagnet/cli/NAME.py` that holds either `command`, a function with typer annotations, or `app`, a
-`typer.Typer` with subcommands of its own, plus one line in `COMMANDS`.
+A subcommand is one file `lagnet/cli/NAME.py` that holds either `command`, a function with typer annotations, or `app`,
+a `typer.Typer` with subcommands of its own, plus one line in `COMMANDS`.
 """
 
 from __future__ import annotations
@@ -119,9 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except LagnetError as error:
         return _complain(str(error))
     except ClickException as error:
-        ctx = getattr(error, "ctx", None)
-        help_line = f"; see {ctx.command_path} --help" if ctx else ""
-        return _complain(error.format_message().rstrip(".") + help_line)
+        return _complain_of_usage(error)
     except typer.Abort:
         return _complain("interrupted", INTERRUPTED)
     except MemoryError:
@@ -132,6 +131,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return DONE
     except OSError as error:
         return _complain(f"{error.filename or 'file system'}: {error.strerror or error}")
+
+
+def _complain_of_usage(error: Any) -> int:
+    message, ctx = error.format_message().strip().rstrip("."), getattr(error, "ctx", None)
+    if not message:
+        return BAD_INPUT  # a group called without a subcommand has shown its help
+    return _complain(message + (f"; see {ctx.command_path} --help" if ctx else ""))
 
 
 def _complain(message: str, code: int = BAD_INPUT) -> int:

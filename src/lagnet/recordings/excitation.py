@@ -10,7 +10,7 @@ from lagnet.recordings.recording import Recording
 
 STILL = 0.02  # share of the joint's top speed below which it counts as standing
 TOP = 0.99  # quantile of |v| that stands for the top speed: single glitches do not count
-MOVED = 1e-3  # [rad or m] travel below which a joint has not moved
+MOVED = 5e-3  # [rad or m] travel below which a joint was held, shaken by the others at most
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class JointExcitation:
     Args:
         joint: its name.
         position_range: (lowest, highest) q [rad] or [m].
-        speed_range: (lowest, highest) |v| while moving [rad/s] or [m/s]; (0, 0) where it did not move.
+        speed_range: (lowest, highest) |v| while moving [rad/s] or [m/s]; (0, 0) where it was held.
         forward_share: share of moving samples with v > 0.
         backward_share: share of moving samples with v < 0.
         reversals: number of changes of direction, counted between stretches that are faster than standing.
@@ -74,7 +74,8 @@ def _joint(name: str, j: int, motions: list[tuple[Recording, np.ndarray, np.ndar
     tau = np.concatenate([part.tau[:, j] for part, _, _ in motions])
     v = np.concatenate([v[:, j] for _, v, _ in motions])
     a = np.concatenate([a[:, j] for _, _, a in motions])
-    threshold = STILL * float(np.quantile(np.abs(v), TOP))
+    held = float(np.ptp(q)) <= MOVED
+    threshold = np.inf if held else STILL * float(np.quantile(np.abs(v), TOP))
     moving = np.abs(v) > threshold
     speeds = np.abs(v[moving])
     return JointExcitation(

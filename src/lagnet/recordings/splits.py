@@ -105,9 +105,11 @@ def fold_of_samples(trajectory: np.ndarray, n_folds: int) -> np.ndarray:
         return np.arange(n) * n_folds // n
     # A motion goes to the fold in which its middle falls; every fold gets one motion at least.
     middle = np.cumsum(lengths) - lengths / 2
-    fold = np.minimum((middle * n_folds / n).astype(np.int64), n_folds - 1)
-    last = np.arange(lengths.size) - lengths.size + n_folds
-    fold = np.minimum(np.maximum.accumulate(np.maximum(fold, last)), np.arange(lengths.size))
+    fold = np.zeros(lengths.size, dtype=np.int64)
+    previous = -1
+    for k, wanted in enumerate((middle * n_folds / n).astype(np.int64)):
+        needed = n_folds - lengths.size + k  # later motions must still reach the last fold
+        previous = fold[k] = min(max(wanted, previous, needed), previous + 1, n_folds - 1)
     return fold[trajectory]
 
 
