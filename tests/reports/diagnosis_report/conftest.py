@@ -260,3 +260,9 @@ def case(request: pytest.FixtureRequest) -> Case:
 def six() -> Case:
     """An arm of six joints with friction on four of them, a tie, an abstention and a remainder."""
     return six_joints()
+
+
+@pytest.fixture(scope="session")
+def one_slide() -> Case:
+    """A single prismatic joint with friction."""
+    return slide()

@@ -113,13 +113,12 @@ def test_paths_are_shown_by_their_last_part_in_the_heading(six, tmp_path):
     assert r"C:\robots\arm.urdf" in page
 
 
-def test_few_effects_are_given_with_their_values(tmp_path, case):
-    if case.verdict["nominal"]["joints"] != ["slide"]:
-        return
-    page = write_report(case.verdict, case.evidence, tmp_path / "report.html").read_text(encoding="utf-8")
+def test_few_effects_are_given_with_their_values_and_a_slide_in_newtons(one_slide, tmp_path):
+    page = write_report(one_slide.verdict, one_slide.evidence, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "viscous friction on slide (203.5 ± 4.1 N s/m)" in page
-    assert "force [N]" in page
-    assert "velocity [m/s]" in page
+    layout = figures_in(page)["joint-0-velocity"]["layout"]
+    titles = {layout[name]["title"]["text"] for name in ("xaxis", "yaxis")}
+    assert titles == {"velocity [m/s]", "residual force [N]"}
 
 
 def test_absent_parts_leave_no_empty_sections(six, tmp_path):
@@ -171,6 +170,16 @@ def test_page_opens_without_errors(case, tmp_path, browse):
     for effect in case.verdict["effects"]:
         assert effect["effect"] in seen.text
         assert effect["effect"].replace("_", " ").lower() in seen.text.lower()
+
+
+@pytest.mark.browser
+def test_every_joint_is_drawn_when_all_are_asked_for(six, tmp_path, browse):
+    path = write_report(six.verdict, six.evidence, tmp_path / "report.html")
+    page = path.read_text(encoding="utf-8").replace('aria-pressed="true"', 'aria-pressed="false"')
+    path.write_text(page.replace('data-show="*" aria-pressed="false"', 'data-show="*" aria-pressed="true"'), "utf-8")
+    seen = browse(path)
+    assert seen.console == ()
+    assert seen.drawn == len(figures_in(page)) == 2 * 6 + 2
 
 
 @pytest.mark.browser
