@@ -168,3 +168,50 @@ def test_torque_is_preferred_to_current(tmp_path: Path) -> None:
     found = load(tmp_path, "\n".join(both) + "\n")
     np.testing.assert_array_equal(found.tau, load(tmp_path, WHOLE).tau)
     assert found.warnings == ("holds torque and current: the current is not used",)
+
+
+@pytest.mark.parametrize("cell", ["0.1234567", "12.5000000", "-3.25e-01", "walk_12"])
+def test_a_last_cell_that_lost_its_end_is_noticed_wherever_writing_is_even(cell: str, tmp_path: Path) -> None:
+    """Cut at every byte of the last line: the whole lines stay, the cut one never comes in with a wrong number."""
+    header = HEADER + (",trajectory" if cell == "walk_12" else ",note")
+    lines = [header, *(f"{row},{cell}" for row in samples(40))]
+    whole = "\n".join(lines).encode()
+    start = whole.rindex(b"\n") + 1
+    for stop in range(start + 1, len(whole)):
+        found = load(tmp_path, whole[:stop])
+        assert len(found) == 39
+        assert found.warnings == ("the last line is cut short; it was dropped",)
+    assert len(load(tmp_path, whole)) == 40
+    assert load(tmp_path, whole).warnings == ()
+
+
+def test_numbers_of_uneven_length_do_not_cost_the_last_sample(tmp_path: Path) -> None:
+    """A file that merely lacks its last line end is whole."""
+    time = 0.01 * np.arange(60)
+    rows = [f"{t:.7g},{np.sin(t):.7g},{round(np.cos(t), k % 4):.7g}" for k, t in enumerate(time)]
+    found = load(tmp_path, "\n".join(["time,q_0,tau_0", *rows]))
+    assert len(found) == 60
+    assert found.warnings == ()
+
+
+def test_other_encodings_in_columns_of_no_interest(tmp_path: Path) -> None:
+    lines = WHOLE.splitlines()
+    text = "\n".join([lines[0] + ",operator", *(line + ",Jürgen" for line in lines[1:])]) + "\n"
+    for encoding in ("latin-1", "utf-8"):
+        assert len(load(tmp_path, text.encode(encoding))) == 60
+    damaged = text.replace("0.30", "Jü,0.30", 1).encode("latin-1")
+    assert "1 line with a wrong number of cells" in load(tmp_path, damaged).warnings[0]
+
+
+def test_an_open_quote_costs_its_own_line_only(tmp_path: Path) -> None:
+    lines = WHOLE.splitlines()
+    lines[10] = lines[10].replace(",", ',"', 1)
+    found = load(tmp_path, "\n".join(lines) + "\n")
+    assert len(found) == 59
+
+
+def test_an_empty_label_is_refused(tmp_path: Path) -> None:
+    rows = [f"{row},a" for row in samples(30)]
+    rows[12] = rows[12][:-1]
+    with pytest.raises(RecordingError, match="line 14, column trajectory: empty cell"):
+        load(tmp_path, "\n".join([HEADER + ",trajectory", *rows]) + "\n")

@@ -160,6 +160,7 @@ class _Assembly:
         time = self.table.numbers[layout.time] * self.column_map.factor("time")
         self._refuse_few(time.size)
         self._refuse_not_finite()
+        self._refuse_empty_labels()
         motions = clock.motions(self.table.labels, time.size, rows, self.where)
         clock.refuse_backward(time, motions.index, self.table.labels is not None, rows, self.where)
         keep, repeats = clock.first_of_repeats(time, motions.index, rows)
@@ -212,6 +213,15 @@ class _Assembly:
             where=self.where,
             next_step="remove these samples, or split the recording there with a trajectory column",
         )
+
+    def _refuse_empty_labels(self) -> None:
+        empty = [] if self.table.labels is None else np.flatnonzero(self.table.labels == "")
+        if len(empty):
+            raise RecordingError(
+                f"{self.table.rows.of(int(empty[0]))}, column {self.layout.trajectory}: empty cell",
+                where=self.where,
+                next_step="label every sample, or remove the column",
+            )
 
     def _signal(self, kind: str) -> np.ndarray:
         """Shape (n, dof), in SI units (amperes for current)."""

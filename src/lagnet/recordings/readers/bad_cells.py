@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import pyarrow as pa
 
@@ -19,7 +18,7 @@ INFINITE = frozenset({"inf", "infinity"})
 def read_cell_by_cell(
     text: bytes, dialect: Dialect, numbers: Sequence[str], label: str | None, damaged: list[int], where: str
 ) -> pa.Table:
-    """The wanted columns of a table that has a cell which is no number; a bad cell in a cut-off last line is dropped.
+    """The wanted columns of a table that may have a cell which is no number.
 
     Args:
         damaged: filled with the line numbers that have a wrong number of cells.
@@ -29,19 +28,15 @@ def read_cell_by_cell(
     """
     spots = [dialect.names.index(name) for name in numbers]
     label_spot = None if label is None else dialect.names.index(label)
-    cut_off = text[-1:] not in (b"\n", b"\r")
     columns: list[list[float]] = [[] for _ in spots]
     labels: list[str] = []
-    for line, cells, last in _rows(text, dialect, where):
+    for line, cells in _rows(text, dialect, where):
         if not cells:
             cells = [""] * len(dialect.names)
         if len(cells) != len(dialect.names):
             damaged.append(line)
             continue
         values = [_number(cells[spot], dialect.decimal) for spot in spots]
-        if None in values and last and cut_off:
-            damaged.append(line)
-            continue
         if None in values:
             _refuse(line, numbers[values.index(None)], cells[spots[values.index(None)]], where)
         for column, value in zip(columns, values, strict=True):
@@ -53,28 +48,22 @@ def read_cell_by_cell(
     return pa.table(arrays)
 
 
-def _cells(reader: Any, where: str) -> Iterator[list[str]]:
-    try:
-        yield from reader
-    except csv.Error as error:
-        raise RecordingError(
-            f"line {reader.line_num}: {error}", where=where, next_step="save it as plain CSV"
-        ) from None
-
-
-def _rows(text: bytes, dialect: Dialect, where: str) -> Iterator[tuple[int, list[str], bool]]:
-    """Line number, cells, and whether it is the file's last line."""
-    stream = io.TextIOWrapper(io.BytesIO(text), encoding="utf-8", errors="replace", newline="")
-    reader = csv.reader(stream, delimiter=dialect.separator)
-    held: tuple[int, list[str]] | None = None
-    for cells in _cells(reader, where):
-        if reader.line_num <= dialect.header_lines:
+def _rows(text: bytes, dialect: Dialect, where: str) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells; quotes do not reach over line ends, as in the fast parser."""
+    lines = io.TextIOWrapper(io.BytesIO(text), encoding="utf-8", newline=None)
+    for number, line in enumerate(lines, start=1):
+        if number <= dialect.header_lines:
             continue
-        if held is not None:
-            yield *held, False
-        held = (reader.line_num, cells)
-    if held is not None:
-        yield *held, True
+        plain = line.rstrip("\n")
+        try:
+            cells = next(csv.reader([plain], delimiter=dialect.separator)) if '"' in plain else _split(plain, dialect)
+        except csv.Error as error:
+            raise RecordingError(f"line {number}: {error}", where=where, next_step="save it as plain CSV") from None
+        yield number, cells
+
+
+def _split(line: str, dialect: Dialect) -> list[str]:
+    return line.split(dialect.separator) if line else []
 
 
 def _number(cell: str, decimal: str) -> float | None:

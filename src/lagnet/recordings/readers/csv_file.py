@@ -13,7 +13,8 @@ import pyarrow.csv as pa_csv
 
 from lagnet.errors import RecordingError
 from lagnet.recordings.readers.bad_cells import read_cell_by_cell
-from lagnet.recordings.readers.dialect import Dialect, sniff
+from lagnet.recordings.readers.cut_line import whole_length
+from lagnet.recordings.readers.dialect import sniff
 from lagnet.recordings.readers.source import MAX_BYTES, RowNames, Table, as_labels, refuse_if_huge
 
 MAX_DAMAGED = 0.1  # share of lines with a wrong number of cells above which the header, not the lines, is to blame
@@ -27,7 +28,11 @@ class CsvSource:
 
     def __init__(self, data: bytes, where: str):
         self._where = where
-        self._dialect, self._text = sniff(unzip(data, where) if data[:2] == b"\x1f\x8b" else data, where)
+        self._dialect, text = sniff(unzip(data, where) if data[:2] == b"\x1f\x8b" else data, where)
+        whole = whole_length(text, self._dialect)
+        self._cut_short = whole < len(text)
+        self._text = pa.py_buffer(text).slice(0, whole)
+        self._open_quote = _has_open_quote(text)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -37,14 +42,20 @@ class CsvSource:
     def read(self, numbers: Sequence[str], label: str | None) -> Table:
         """Load the named columns; lines with too few or too many cells are left out and told."""
         damaged: list[int] = []
-        try:
-            table = self._parse(numbers, label, None)
-        except pa.ArrowInvalid:
-            table = self._parse_carefully(numbers, label, damaged)
+        table = self._table(numbers, label, damaged)
         columns = {name: table.column(_key(self.names.index(name))) for name in numbers}
         values = {name: column.to_numpy() for name, column in columns.items()}
         labels = None if label is None else table.column(_key(self.names.index(label))).to_numpy(zero_copy_only=False)
         return self._without_damage(values, labels, damaged)
+
+    def _table(self, numbers: Sequence[str], label: str | None, damaged: list[int]) -> pa.Table:
+        if self._open_quote:
+            # The fast parser would take all lines up to the next quote for one cell.
+            return read_cell_by_cell(self._text.to_pybytes(), self._dialect, numbers, label, damaged, self._where)
+        try:
+            return self._parse(numbers, label, None)
+        except pa.ArrowInvalid:
+            return self._parse_carefully(numbers, label, damaged)
 
     def _parse(self, numbers: Sequence[str], label: str | None, on_damage) -> pa.Table:
         types = {_key(self.names.index(name)): pa.float64() for name in numbers}
@@ -80,7 +91,7 @@ class CsvSource:
             return self._parse(numbers, label, leave_out)
         except pa.ArrowInvalid:
             damaged.clear()
-            return read_cell_by_cell(self._text, self._dialect, numbers, label, damaged, self._where)
+            return read_cell_by_cell(self._text.to_pybytes(), self._dialect, numbers, label, damaged, self._where)
 
     def _without_damage(self, values: dict[str, np.ndarray], labels: np.ndarray | None, damaged: list[int]) -> Table:
         n_rows = next(iter(values.values())).size
@@ -94,11 +105,8 @@ class CsvSource:
             )
         numbers_of = RowNames("line", first, tuple(damaged))
         empty = np.logical_and.reduce([np.isnan(column) for column in values.values()])
-        cut_short = self._last_line_is_cut(values, empty)
         keep = ~empty
-        if cut_short:
-            keep[np.flatnonzero(keep)[-1]] = False
-        warnings = self._tell(damaged, empty, cut_short, numbers_of)
+        warnings = self._tell(damaged, empty, numbers_of)
         kept = slice(None) if keep.all() else keep
         return Table(
             {name: column[kept] for name, column in values.items()},
@@ -107,18 +115,11 @@ class CsvSource:
             warnings,
         )
 
-    def _last_line_is_cut(self, values: dict[str, np.ndarray], empty: np.ndarray) -> bool:
-        """The last line has all its separators, no line end, and an empty last cell: writing stopped in its middle."""
-        if self._text[-1:] in (b"\n", b"\r") or not (~empty).any():
-            return False
-        last = np.flatnonzero(~empty)[-1]
-        return any(np.isnan(column[last]) for column in values.values())
-
-    def _tell(self, damaged: list[int], empty: np.ndarray, cut_short: bool, rows: RowNames) -> tuple[str, ...]:
+    def _tell(self, damaged: list[int], empty: np.ndarray, rows: RowNames) -> tuple[str, ...]:
         told = []
         n_lines = empty.size + len(damaged) + self._dialect.header_lines
         inside = [line for line in damaged if line < n_lines]
-        if cut_short or (damaged and damaged[-1] >= n_lines):
+        if self._cut_short or (damaged and damaged[-1] >= n_lines):
             told.append("the last line is cut short; it was dropped")
         if inside:
             told.append(
@@ -148,8 +149,10 @@ def unzip(data: bytes, where: str) -> bytes:
     return text
 
 
+def _has_open_quote(text: bytes) -> bool:
+    """Whether a line opens a quote that it does not close."""
+    return b'"' in text and any(line.count(b'"') % 2 for line in text.splitlines())
+
+
 def _key(position: int) -> str:
     return f"c{position}"
-
-
-__all__ = ["CsvSource", "Dialect", "unzip"]

@@ -37,6 +37,7 @@ def sniff(data: bytes, where: str) -> tuple[Dialect, bytes]:
     """
     text = data.removeprefix(b"\xef\xbb\xbf")
     _refuse_other_content(text, where)
+    text = _valid_utf8(text)
     skipped, header = _header_line(text)
     if not header:
         raise RecordingError("the file is empty", where=where, next_step="record again or give another file")
@@ -63,6 +64,17 @@ def _refuse_other_content(text: bytes, where: str) -> None:
         raise RecordingError(
             "holds binary data, not text", where=where, next_step="give the suffix its format has: .parquet, .npz, .mat"
         )
+
+
+def _valid_utf8(text: bytes) -> bytes:
+    """Letters of another encoding stand in comments at most; numbers and names are ASCII in all of them."""
+    if text.isascii():
+        return text
+    try:
+        text.decode()
+    except UnicodeDecodeError:
+        return text.decode(errors="replace").encode()
+    return text
 
 
 def _header_line(text: bytes) -> tuple[int, str]:
