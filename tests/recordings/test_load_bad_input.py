@@ -276,6 +276,16 @@ def test_a_continuous_joint_may_turn_and_one_glitch_is_no_unit(tmp_path: Path) -
     assert load_recording(tmp_path / "glitch.npz", robot=ARM).n_dof == 2
 
 
+def test_limits_that_a_robot_file_left_at_zero_say_nothing(tmp_path: Path) -> None:
+    time = 0.01 * np.arange(300)
+    q = np.column_stack([6 * np.sin(time), 6 * np.sin(time)])
+    np.savez(tmp_path / "run.npz", time=time, q=q, tau=q)
+    unset = SimpleNamespace(**{**vars(ARM), "position_lower": np.zeros(2), "position_upper": np.zeros(2)})
+    assert load_recording(tmp_path / "run.npz", robot=unset).n_dof == 2
+    bare = SimpleNamespace(joints=ARM.joints, n_dof=2)
+    assert load_recording(tmp_path / "run.npz", robot=bare).n_dof == 2
+
+
 def test_millimetres_and_degrees_per_second_are_refused(tmp_path: Path) -> None:
     time = 0.01 * np.arange(300)
     rail = SimpleNamespace(

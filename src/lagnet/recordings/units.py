@@ -30,7 +30,9 @@ class JointRanges:
     types: tuple[str, ...]
 
     def reach(self, joint: int) -> float:
-        """Largest |q| inside the limits; inf where unlimited."""
+        """Largest |q| inside the limits; inf where unlimited, or where a robot file left them at zero."""
+        if not self.lower[joint] < self.upper[joint]:
+            return float("inf")
         return float(max(abs(self.lower[joint]), abs(self.upper[joint])))
 
 
