@@ -9,7 +9,9 @@ import numpy as np
 
 from lagnet.diagnosis.fitting import Fit, Workbench, fit_selection
 from lagnet.diagnosis.search import (
+    LEAST_OF_ALL,
     LEAST_SHARE,
+    LEAST_TORQUE,
     JointView,
     compatible,
     joint_memory,
@@ -82,8 +84,14 @@ def search_arm(bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarr
 def _remember(bench: Workbench, found: Found) -> Scales:
     """The scales with the memory that the residual of a selection has."""
     views = views_of(bench, found)
-    memory = np.array([joint_memory(v, own) for v, own in zip(views, found.local, strict=True)])
+    memory = np.array([_least_memory(v, own) for v, own in zip(views, found.local, strict=True)])
     return replace(found.scales, memory=memory)
+
+
+def _least_memory(view: JointView, own: tuple[int, ...]) -> float:
+    """Memory of what even a rich selection leaves: while much is missing, the residual hangs together because of it."""
+    rich = (*own, *(i for i in rich_start(view) if i not in own and compatible(view, own, i)))
+    return min(joint_memory(view, own), joint_memory(view, rich))
 
 
 def views_of(bench: Workbench, found: Found) -> list[JointView]:
@@ -176,7 +184,9 @@ def _matters(bench: Workbench, found: Found, index: int) -> bool:
     """Whether a far-reaching hypothesis takes a noticeable part off the error of some joint."""
     sigma = _sigma(bench, found, found.scales)
     without = fit_selection(bench, [i for i in found.selection if i != index], sigma)
-    return bool(np.any(without.sse - found.fit.sse > LEAST_SHARE * without.sse))
+    nominal = np.array([t[-1, -1] for t in bench.total])
+    least = np.maximum(LEAST_TORQUE**2 * found.scales.torque_power, LEAST_OF_ALL * nominal)
+    return bool(np.any(without.sse - found.fit.sse > np.maximum(LEAST_SHARE * without.sse, least)))
 
 
 def _drop_far(bench: Workbench, best: Found) -> Found:

@@ -21,6 +21,7 @@ from lagnet.diagnosis.problem import Problem, pose_problem
 from lagnet.diagnosis.refit import Refit, refit
 from lagnet.diagnosis.rivals import Contest, hold_contests
 from lagnet.diagnosis.settle import settle_on
+from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected import CorrectedModel, NamedEffect
@@ -100,7 +101,7 @@ def diagnose(
     fit_on, held = _divide(recordings, robot, holdout)
     fit = condition(fit_on, bandwidth)
     unseen = condition(held, fit.bandwidth)
-    problem = pose_problem(robot, fit, unseen)
+    problem = sharpen(pose_problem(robot, fit, unseen))
     inquiry = inquire(problem, fit, unseen, seed)
     corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)

@@ -54,7 +54,7 @@ def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest
         if not np.isfinite(score):
             continue
         gap = float((here - score) / np.log(10.0))
-        same = view.loss(other)[0] < (1.0 + SAME) * error
+        same = view.loss(other)[0] - error < max(SAME * error, view.least_gain)
         for name in names:
             if gap < odds.get(name, np.inf):
                 odds[name] = gap

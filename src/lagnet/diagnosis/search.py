@@ -13,6 +13,9 @@ PRICE = 4.0  # nats that a hypothesis must earn: about the logarithm of the numb
 PRICE_PER_COLUMN = 1.0  # nats more for each coefficient, beyond what unseen blocks already charge
 LEAST_SHARE = 0.06  # of the error still there: an effect that takes less off is not claimed
 LEAST_TORQUE = 0.004  # of the joint's torque: effects smaller than this are not claimed
+LEAST_OF_ALL = (
+    0.002  # of the nominal error: below it an effect may be what a larger one leaves where its form is not exact
+)
 ROUNDS = 40
 
 
@@ -75,7 +78,12 @@ class JointView:
         without, _ = self.loss([i for i in selection if i != index])
         with_it, _ = self.loss(selection)
         gain = without - with_it
-        return gain > LEAST_SHARE * without and gain > LEAST_TORQUE**2 * self.torque_power
+        return gain > max(LEAST_SHARE * without, LEAST_TORQUE**2 * self.torque_power, self.least_gain)
+
+    @property
+    def least_gain(self) -> float:
+        """Squared error that an effect must take off to stand beside larger ones."""
+        return LEAST_OF_ALL * float(self.total[-1, -1])
 
     def _shaped(self, index: int) -> int:
         return len(self.bench.library.hypotheses[index].shape)
@@ -138,7 +146,7 @@ def simplify(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
                 continue
             other = tuple(simple[0] if k == i else k for k in selection)
             before, after = view.loss(selection)[0], view.loss(other)[0]
-            if after - before < LEAST_SHARE * after and np.isfinite(view.score(other)):
+            if after - before < max(LEAST_SHARE * after, view.least_gain) and np.isfinite(view.score(other)):
                 return simplify(view, other)
     return selection
 

@@ -9,10 +9,10 @@ import numpy as np
 from lagnet.diagnosis.arm_search import Found, refit_found
 from lagnet.diagnosis.evidence_of import held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.rivals import SAME
+from lagnet.diagnosis.search import LEAST_SHARE
 
 ROUNDS = 20
-HARMLESS = 1.0  # an effect stays if the held-out error without it is larger than with it
+HARMLESS = 1.02  # an effect stays if the held-out error without it is larger by at least this factor
 
 
 def settle_on(bench: Workbench, unseen: Workbench, found: Found, scale: np.ndarray) -> Found:
@@ -51,7 +51,7 @@ def prefer_plain(bench: Workbench, found: Found) -> Found:
             continue
         local = (*(i for i in own if i != asymmetric), *pair)
         other = refit_found(bench, replace(found, local=(*found.local[:joint], local, *found.local[joint + 1 :])))
-        if other.fit.sse[joint] < (1.0 + SAME) * found.fit.sse[joint]:
+        if other.fit.sse[joint] < (1.0 + LEAST_SHARE) * found.fit.sse[joint]:
             found = other
     return found
 

@@ -43,7 +43,7 @@ class GravityTilt(Effect):
         """Gravity in the frame of the tilted base, shape (3,) [m/s²]."""
         first, second = horizontal_axes(gravity)
         turn = Rotation.from_rotvec(values["theta_1"] * first + values["theta_2"] * second)
-        return turn.inv().apply(gravity)
+        return turn.inv().as_matrix() @ gravity
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
         gravity = np.asarray(motion.model.gravity, dtype=float)

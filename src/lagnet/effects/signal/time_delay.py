@@ -32,6 +32,9 @@ class TimeDelay(Effect):
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"T": float(np.clip(coefficients[0], -0.25, 0.25))}
 
+    def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
+        return bool(abs(coefficients[0]) <= 0.25)
+
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         time, load = motion.time, motion.load[:, joint]
         earlier = np.clip(time - values["T"], time[0], time[-1])
