@@ -1,10 +1,11 @@
-"""MJCF to a Pinocchio model: bodies, joints and inertials alone; nothing that opens another file."""
+"""MJCF to a Pinocchio model: bodies, joints, inertials and their defaults; nothing that opens another file.
+
+Read here and not by Pinocchio's own parser, which writes past its buffers on malformed files.
+"""
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-from xml.etree import ElementTree
+from dataclasses import dataclass, field
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -14,8 +15,11 @@ from lagnet.errors import RobotError
 from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
 from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.mjcf_checks import SUPPORTED, reduce_mjcf
-from lagnet.rigid_body.urdf_checks import LARGEST, numbers
+from lagnet.rigid_body.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
+from lagnet.rigid_body.urdf_checks import numbers
 from lagnet.rigid_body.xml_files import XmlFile
+
+Defaults = dict[str, dict[str, dict[str, str]]]  # class → tag → attributes
 
 
 def read_mjcf(file: XmlFile) -> Description:
@@ -25,50 +29,157 @@ def read_mjcf(file: XmlFile) -> Description:
         RobotError: naming the file and the body or joint at fault.
     """
     root, where = file.root(), file.source
-    gravity = [numbers(o, "gravity", 3, where, o) for o in root.findall("option") if o.get("gravity") is not None]
     warnings = reduce_mjcf(root, where)
-    model = _build(root, where)
-    if gravity:
-        model.gravity.linear = gravity[-1]
-    for i in range(1, model.njoints):
-        if model.joints[i].nq != 1 or model.joints[i].nv != 1:
-            raise RobotError(f"joint {model.names[i]} has no single position", where=where, choices=SUPPORTED)
-    if model.nv == 0:
-        raise RobotError("has no moving joint", where=where)
-    types = tuple(_type(model, i) for i in range(1, model.njoints))
-    _check_finite(model, where)
-    warnings += _friction_warnings(model) + mass_warnings(model, where)
+    reader = _reader(root, where)
+    for body in root.findall("worldbody/body"):
+        reader.add_body(body, 0, pin.SE3.Identity(), "main")
+    for option in root.findall("option"):
+        if option.get("gravity") is not None:
+            reader.model.gravity.linear = numbers(option, "gravity", 3, where, option)
+    model = reader.model
+    warnings += friction_warning(reader.with_friction) + mass_warnings(model, where)
     links = moving_bodies(model)
     inertials = tuple((link, model.inertias[i + 1].toDynamicParameters()) for i, link in enumerate(links))
-    return Description(model, types, links, inertials, "mjcf", where, file, (), tuple(warnings))
+    return Description(model, tuple(reader.types), links, inertials, "mjcf", where, file, (), tuple(warnings))
 
 
-def _build(root: Element, where: str) -> pin.Model:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "arm.xml"
-        path.write_bytes(ElementTree.tostring(root))
-        try:
-            return pin.buildModelFromMJCF(str(path))
-        except Exception as error:  # the parser raises bare exceptions of several kinds
-            raise RobotError(f"is not an MJCF that can be built ({str(error).strip()})", where=where) from error
+def _reader(root: Element, where: str) -> _Reader:
+    settings: dict[str, str] = {}
+    for compiler in root.findall("compiler"):
+        settings.update(compiler.attrib)
+    defaults: Defaults = {"main": {}}
+    for group in root.findall("default"):
+        _collect(group, "main", defaults, where)
+    reading = Reading(where, settings.get("angle", "degree") == "degree", settings.get("eulerseq", "xyz"))
+    from_shapes, auto = settings.get("inertiafromgeom") == "true", settings.get("autolimits", "true") == "true"
+    return _Reader(reading, defaults, from_shapes, auto)
 
 
-def _friction_warnings(model: pin.Model) -> list[str]:
-    friction = zip(model.names[1:], model.damping, model.friction, strict=True)
-    return friction_warning(name for name, damping, dry in friction if damping or dry)
+def _collect(group: Element, parent: str, defaults: Defaults, where: str, top: bool = True) -> None:
+    """Default attributes of each class; a class inside another starts from that one's."""
+    name = group.get("class", "main" if top else "")
+    if not name or (name in defaults and name != "main"):
+        raise RobotError(f"default class '{name[:60]}' is nameless or given twice", where=where)
+    own = {tag: dict(attributes) for tag, attributes in defaults[parent].items()}
+    for part in group:
+        if part.tag in ("joint", "geom"):
+            own.setdefault(part.tag, {}).update(part.attrib)
+    defaults[name] = own
+    for part in group.findall("default"):
+        _collect(part, name, defaults, where, top=False)
 
 
-def _type(model: pin.Model, i: int) -> str:
-    if "Prismatic" in model.joints[i].shortname() or model.joints[i].shortname()[10:] in ("PX", "PY", "PZ"):
-        return "prismatic"
-    k = model.joints[i].idx_q
-    bounded = np.isfinite(model.lowerPositionLimit[k]) and np.isfinite(model.upperPositionLimit[k])
-    return "revolute" if bounded else "continuous"
+@dataclass
+class _Reader:
+    """Adds bodies to a model one by one, from the base outwards."""
+
+    reading: Reading
+    defaults: Defaults
+    from_shapes: bool
+    auto_limits: bool
+    model: pin.Model = field(default_factory=pin.Model)
+    types: list[str] = field(default_factory=list)
+    with_friction: list[str] = field(default_factory=list)
+
+    def add_body(self, body: Element, parent: int, offset: pin.SE3, inherited: str) -> None:
+        """Adds a body and all that hangs on it; offset is the frame around it in the frame of the joint before."""
+        inherited = body.get("childclass", inherited)
+        place = offset * placement(body, body, self.reading)
+        joint = body.find("joint")
+        if joint is not None:
+            parent, place = self._add_joint(self._resolved(joint, inherited, body), body, parent, place)
+        self.model.appendBodyToJoint(parent, self._inertia(body, inherited), place)
+        self._add_frame(body, parent, place)
+        for child in body.findall("body"):
+            self.add_body(child, parent, place, inherited)
+
+    def _add_frame(self, body: Element, joint: int, place: pin.SE3) -> None:
+        before = self.model.getFrameId(self.model.names[joint], pin.FrameType.JOINT) if joint else 0
+        name = body.get("name", "")
+        self.model.addFrame(pin.Frame(name, joint, before, place, pin.FrameType.BODY, pin.Inertia.Zero()))
+
+    def _resolved(self, element: Element, inherited: str, body: Element) -> Element:
+        """The element with the defaults of its class filled in."""
+        name = element.get("class", inherited)
+        if name not in self.defaults:
+            what = f"body {body.get('name')} names the unknown class '{name[:60]}'"
+            raise RobotError(what, where=self.reading.where, choices=sorted(self.defaults))
+        return Element(element.tag, self.defaults[name].get(element.tag, {}) | element.attrib)
+
+    def _inertia(self, body: Element, inherited: str) -> pin.Inertia:
+        inertial = body.find("inertial")
+        if inertial is not None and not self.from_shapes:
+            return stated_inertia(inertial, body, self.reading)
+        total = pin.Inertia.Zero()
+        for shape in body.findall("geom"):
+            part = shape_inertia(self._resolved(shape, inherited, body), body, self.reading)
+            total = part if total.mass == 0 else total + part
+        return total
+
+    def _add_joint(self, joint: Element, body: Element, parent: int, place: pin.SE3) -> tuple[int, pin.SE3]:
+        """Adds the joint of a body and returns its index and where the body lies in its frame."""
+        name, kind, where = joint.get("name", ""), joint.get("type", "hinge"), self.reading.where
+        if kind not in SUPPORTED:
+            what = f"joint {name} of body {body.get('name')} is of type '{kind[:60]}', which has no single position"
+            raise RobotError(what, where=where, choices=SUPPORTED)
+        axis = numbers(joint, "axis", 3, where, body, "0 0 1")
+        if np.linalg.norm(axis) < 1e-9:
+            raise RobotError(f"joint {name} has an axis of length zero", where=where)
+        axis = axis / np.linalg.norm(axis)
+        anchor = pin.SE3(np.eye(3), numbers(joint, "pos", 3, where, body, "0 0 0"))
+        (reference,) = numbers(joint, "ref", 1, where, body, "0")
+        start = place * anchor * _displacement(kind, axis, -self._turned(kind, reference))
+        low, high = self._limits(joint, kind, body)
+        scalars = [np.array([x]) for x in (self._effort(joint, body), np.inf, low, high)]
+        index = self.model.addJoint(parent, _joint_model(kind, axis), start, name, *scalars)
+        self.model.addJointFrame(index)
+        bounded = np.isfinite(low) and np.isfinite(high)
+        self.types.append("prismatic" if kind == "slide" else "revolute" if bounded else "continuous")
+        self._declared(joint, body, index)
+        return index, anchor.inverse()
+
+    def _turned(self, kind: str, value: np.ndarray | float) -> np.ndarray:
+        return self.reading.angle(value) if kind == "hinge" else np.asarray(value, dtype=float)
+
+    def _limits(self, joint: Element, kind: str, body: Element) -> tuple[float, float]:
+        limited = joint.get("limited", "auto")
+        if limited not in ("true", "false", "auto"):
+            what = f"joint {joint.get('name')} limited='{limited[:60]}' is unknown"
+            raise RobotError(what, where=self.reading.where, choices=("true", "false", "auto"))
+        if limited == "false" or joint.get("range") is None or (limited == "auto" and not self.auto_limits):
+            return -np.inf, np.inf
+        low, high = self._turned(kind, numbers(joint, "range", 2, self.reading.where, body))
+        if low > high:
+            what = f"joint {joint.get('name')} has its lower limit above its upper one"
+            raise RobotError(what, where=self.reading.where)
+        return float(low), float(high)
+
+    def _effort(self, joint: Element, body: Element) -> float:
+        if joint.get("actuatorfrcrange") is None:
+            return np.inf
+        return float(np.abs(numbers(joint, "actuatorfrcrange", 2, self.reading.where, body)).max())
+
+    def _declared(self, joint: Element, body: Element, index: int) -> None:
+        """Rotor inertia is part of the model; damping and friction are only noted."""
+        found = {key: numbers(joint, key, 1, self.reading.where, body, "0")[0] for key in ("damping", "frictionloss")}
+        if any(found.values()):
+            self.with_friction.append(joint.get("name", ""))
+        armature = np.array(self.model.armature)
+        armature[self.model.joints[index].idx_v] = numbers(joint, "armature", 1, self.reading.where, body, "0")[0]
+        self.model.armature = armature
 
 
-def _check_finite(model: pin.Model, where: str) -> None:
-    for i in range(1, model.njoints):
-        body = model.inertias[i]
-        found = [body.mass, *body.lever, *body.inertia.ravel(), *model.jointPlacements[i].homogeneous.ravel()]
-        if not np.isfinite(found).all() or np.abs(found).max() > LARGEST:
-            raise RobotError(f"joint {model.names[i]} or its body holds a number that no robot has", where=where)
+def _joint_model(kind: str, axis: np.ndarray) -> pin.JointModel:
+    """A joint along x, y or z where it can be, which is computed faster than one along any axis."""
+    along = np.flatnonzero(axis == 1.0)
+    if kind == "hinge":
+        plain = (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ)
+        return plain[along[0]]() if along.size else pin.JointModelRevoluteUnaligned(axis)
+    plain = (pin.JointModelPX, pin.JointModelPY, pin.JointModelPZ)
+    return plain[along[0]]() if along.size else pin.JointModelPrismaticUnaligned(axis)
+
+
+def _displacement(kind: str, axis: np.ndarray, position: np.ndarray) -> pin.SE3:
+    if kind == "slide":
+        return pin.SE3(np.eye(3), axis * position)
+    return pin.SE3(pin.exp3(axis * position), np.zeros(3))

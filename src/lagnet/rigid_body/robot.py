@@ -160,7 +160,7 @@ class Robot:
         Columns: force x, y, z [N], moment x, y, z [N m], in the axes of the base, acting at the tip (joint -1) or at
         the origin of a joint's frame. It is -Jᵀ: a hand that is pushed down (F_z < 0) asks for more lift.
         """
-        frame = self._tip_frame() if joint == -1 else self._model.getFrameId(self.joints[self._joint(joint)])
+        frame = self._tip_frame() if joint == -1 else self._joint_frame(joint)
         return -batches.tip_jacobian(self._model, frame, *self._batch(q=q)).transpose(0, 2, 1)
 
     def skeleton(self, q: JointVector) -> np.ndarray:
@@ -256,6 +256,9 @@ class Robot:
         pin.computeJointJacobians(self._model, data, q)
         pin.updateFramePlacements(self._model, data)
         return data
+
+    def _joint_frame(self, joint: int) -> int:
+        return self._model.getFrameId(self.joints[self._joint(joint)], pin.FrameType.JOINT)
 
     def _tip_frame(self) -> int:
         """The frame on the last joint's body that lies farthest from it: a flange or tool frame where there is one."""
