@@ -14,7 +14,7 @@ STRONG = 0.02  # of the residual that dry friction must explain before its sharp
 
 
 def sharpen(problem: Problem) -> Problem:
-    """The problem with the blurred speed of each joint where friction is sharper or softer than noise alone makes it."""
+    """The problem with the blurred speed of each joint at which its friction fits best."""
     slow = problem.slow.copy()
     for joint in range(problem.n_dof):
         errors = {f: _error(problem, joint, f * problem.slow[joint]) for f in FACTORS}
