@@ -1,0 +1,51 @@
+"""`lagnet simulate`: a robot moved in PyBullet, with known effects added, to recordings and a separate truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    robot: Annotated[str, typer.Option(help="Nominal model: URDF or MJCF path, or a name such as ur5.")],
+    out: Annotated[Path, typer.Option(help="New folder to write recordings and truth.json to.")],
+    effects: Annotated[
+        Path | None, typer.Option(help='TOML file of effects to add: [[effect]] name="..." joint="..." parameters.')
+    ] = None,
+    trajectories: Annotated[int, typer.Option(help="Number of recordings.")] = 4,
+    seed: Annotated[int, typer.Option(help="Seed of motions and noise.")] = 0,
+    engine: Annotated[str, typer.Option(help="Physics engine: pybullet.")] = "pybullet",
+    duration: Annotated[float, typer.Option(help="Length of each recording [s].")] = 20.0,
+    rate: Annotated[float, typer.Option(help="Samples a second [Hz].")] = 100.0,
+    step_rate: Annotated[float, typer.Option(help="Steps of engine and controller a second [Hz].")] = 1000.0,
+    torque_noise: Annotated[float, typer.Option(help="Torque noise as a share of each joint's torque.")] = 0.01,
+    encoder_bits: Annotated[int, typer.Option(help="Encoder steps of a turn as a power of two; 0 for none.")] = 20,
+    clock_jitter: Annotated[float, typer.Option(help="Jitter of the sampling clock [s].")] = 0.0,
+    velocity: Annotated[bool, typer.Option(help="Record speeds too.")] = False,
+) -> None:
+    """Move a robot under torque control, with known effects added, and write recordings; the truth is kept apart."""
+    from lagnet.cli.console import say
+    from lagnet.rigid_body.robot import load_description
+    from lagnet.simulation.effects_file import read_effects
+    from lagnet.simulation.motions import MotionSettings
+    from lagnet.simulation.sensors import SensorSettings
+    from lagnet.simulation.simulate import SimulationSettings, truth
+    from lagnet.simulation.simulate import trajectories as simulated
+    from lagnet.simulation.writing import TRUTH, check_free, write_simulation
+
+    check_free(out)
+    model = load_description(robot)
+    injected = read_effects(effects, model) if effects is not None else ()
+    settings = SimulationSettings(
+        trajectories=trajectories,
+        seed=seed,
+        engine=engine,
+        motion=MotionSettings(duration=duration, rate=step_rate),
+        sensors=SensorSettings(rate, torque_noise, encoder_bits, velocity, clock_jitter=clock_jitter),
+    )
+    recordings = simulated(model, injected, settings)
+    for path in write_simulation(out, truth(model, injected, settings), recordings):
+        say(f"wrote {path}")
+    say(f"the injected effects stand in {out / TRUTH}")
