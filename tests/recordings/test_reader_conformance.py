@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from lagnet.errors import RecordingError
+from lagnet.recordings.column_map import ColumnMap
 from lagnet.recordings.load import READERS, load_recording
 from lagnet.recordings.readers.source import RowNames
 from lagnet.recordings.recording import Recording
@@ -192,3 +193,32 @@ def test_row_names_count_what_was_left_out() -> None:
     assert [rows.of(i) for i in range(6)] == ["line 2", "line 5", "line 6", "line 7", "line 9", "line 10"]
     fewer = rows.without(np.array([1, 4]))
     assert [fewer.of(i) for i in range(4)] == ["line 2", "line 6", "line 7", "line 10"]
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64", "int64", "uint16", "timestamp", "string", "dictionary"])
+def test_parquet_columns_of_other_types(dtype: str, tmp_path: Path) -> None:
+    """Numbers of any kind are read as float64; dates and text are refused by name."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    clock = pa.array(10 * np.arange(80))
+    kinds = {"timestamp": pa.timestamp("ns"), "string": pa.string()}
+    column = clock.dictionary_encode() if dtype == "dictionary" else clock.cast(kinds.get(dtype, dtype))
+    table = pa.table({"time": column, "q_0": np.zeros(80), "tau_0": np.zeros(80)})
+    pq.write_table(table, tmp_path / "run.parquet")
+    if dtype in kinds:
+        with pytest.raises(RecordingError, match=r"column time holds (timestamp|string).*not numbers"):
+            load_recording(tmp_path / "run.parquet")
+    else:
+        np.testing.assert_array_equal(load_recording(tmp_path / "run.parquet").time, 10.0 * np.arange(80))
+
+
+def test_a_clock_in_nanoseconds_since_1970(tmp_path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    start = 1_700_000_000_123_456_789
+    table = pa.table({"time": start + 10_000_000 * np.arange(80), "q_0": np.zeros(80), "tau_0": np.zeros(80)})
+    pq.write_table(table, tmp_path / "run.parquet")
+    found = load_recording(tmp_path / "run.parquet", columns=ColumnMap(scale={"time": 1e-9}))
+    np.testing.assert_allclose(np.diff(found.time), 0.01, atol=1e-6)

@@ -17,6 +17,7 @@ from lagnet.recordings.column_map import ColumnMap, read_column_map
 from lagnet.recordings.layout import Header, Layout, find_layout
 from lagnet.recordings.readers.source import MAX_BYTES, Table, TableSource, refuse_if_huge
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.wrapping import unwrap
 
 READERS = {
     ".csv": ("lagnet.recordings.readers.csv_file", "CsvSource"),
@@ -169,7 +170,11 @@ class _Assembly:
         signals = {kind: self._signal(kind)[kept] for kind in layout.signals}
         time, index = time[kept], motions.index[kept]
         self._refuse_wrong_units(time, index, signals)
-        warnings = (*self.table.warnings, *layout.warnings, *repeats, *self._short_motions(index, motions.names))
+        still_there = rows.without(np.flatnonzero(~keep))
+        turning = np.array([kind != "prismatic" for kind in self._ranges().types])
+        signals["q"], wraps = unwrap(signals["q"], index, turning, layout.joints, still_there)
+        short = self._short_motions(index, motions.names)
+        warnings = (*self.table.warnings, *layout.warnings, *repeats, *wraps, *short)
         return Recording(
             time=time,
             q=signals["q"],
@@ -183,7 +188,7 @@ class _Assembly:
             sha256=sha256,
             warnings=(
                 *warnings,
-                *clock.describe_steps(time, index, motions.names, rows.without(np.flatnonzero(~keep))),
+                *clock.describe_steps(time, index, motions.names, still_there),
             ),
         )
 
@@ -232,12 +237,17 @@ class _Assembly:
         ]
         return np.stack(scaled, axis=1)
 
+    def _ranges(self) -> units.JointRanges:
+        n_dof = len(self.layout.joints)
+        ranges = self.facts.ranges or units.unknown_ranges(n_dof)
+        if ranges.lower.size != n_dof or len(ranges.types) != n_dof:
+            raise RecordingError(f"limits are given for {ranges.lower.size} of {n_dof} joints", where=self.where)
+        return ranges
+
     def _refuse_wrong_units(self, time: np.ndarray, index: np.ndarray, signals: dict[str, np.ndarray]) -> None:
         joints = self.layout.joints
         stated = np.array([self.column_map.states_unit("q", i, joint) for i, joint in enumerate(joints)])
-        ranges = self.facts.ranges or units.unknown_ranges(len(joints))
-        if ranges.lower.size != len(joints) or len(ranges.types) != len(joints):
-            raise RecordingError(f"limits are given for {ranges.lower.size} of {len(joints)} joints", where=self.where)
+        ranges = self._ranges()
         units.refuse_degrees(signals["q"], ranges, joints, stated, self.where)
         if "v" in signals and "v" not in self.column_map.scale:
             units.refuse_degrees_per_second(time, index, signals["q"], signals["v"], joints, self.where)

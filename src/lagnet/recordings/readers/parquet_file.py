@@ -65,7 +65,10 @@ def _numbers(column: pa.ChunkedArray, name: str, where: str) -> np.ndarray:
         raise RecordingError(
             f"column {name} holds {kind}, not numbers", where=where, next_step="write it as float64 in SI units"
         )
-    return column.cast(pa.float64()).to_numpy()
+    if pa.types.is_dictionary(column.type):
+        column = column.cast(kind)
+    # A clock in nanoseconds since 1970 is rounded to float64: the cast is allowed to.
+    return column.cast(pa.float64(), safe=False).to_numpy()
 
 
 def _text(column: pa.ChunkedArray, name: str, where: str) -> np.ndarray:
