@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 import types
@@ -96,10 +97,31 @@ def test_outcomes_become_exit_codes_and_one_line(
     assert told.err.count("\n") == (1 if line else 0)
 
 
-def test_a_programming_error_keeps_its_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_programming_error_keeps_its_trace_and_is_no_failed_check(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     install(monkeypatch, fail(ZeroDivisionError("a bug")))
-    with pytest.raises(ZeroDivisionError):
-        entry.main(["demo"])
+    assert entry.main(["demo"]) == 70
+    told = capsys.readouterr().err
+    assert "Traceback" in told
+    assert "ZeroDivisionError: a bug" in told
+
+
+def test_control_c_ends_a_running_command_with_code_3() -> None:
+    code = (
+        "import signal, sys, time, types; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "def command():\n    print('ready', flush=True)\n    time.sleep(60)\n"
+        "module = types.ModuleType('lagnet.cli.demo'); module.command = command\n"
+        "sys.modules['lagnet.cli.demo'] = module\n"
+        "from lagnet.cli.main import main\nsys.exit(main(['demo']))"
+    )
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"ready\n"
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate(timeout=30)
+    assert process.returncode == 3
+    assert told == b"lagnet: interrupted\n"
 
 
 USAGE = {

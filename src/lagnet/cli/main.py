@@ -1,7 +1,7 @@
 """The `lagnet` command: names every subcommand, imports only the one that is called, and turns errors into exit codes.
 
 Exit codes: 0 done; 1 a check that the user asked for failed (`raise typer.Exit(1)`); 2 bad input or usage;
-3 interrupted.
+3 interrupted; 70 a fault of lagnet itself, with its trace.
 
 A subcommand is one file `lagnet/cli/NAME.py` that holds either `command`, a function with typer annotations, or `app`,
 a `typer.Typer` with subcommands of its own, plus one line in `COMMANDS`.
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,7 +29,7 @@ COMMANDS = {
     "diagnose": "Say where recordings and robot differ, and name the physics that was left out.",
     "data": "List and fetch the public data sets that tests and studies use.",
 }
-DONE, CHECK_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3
+DONE, CHECK_FAILED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 3, 70
 HELP = (
     "Find the physics that a robot's simulation leaves out. "
     "ROBOT is a URDF or MJCF path, a name of example-robot-data, or a folder written by train or diagnose."
@@ -131,6 +132,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return DONE
     except OSError as error:
         return _complain(f"{error.filename or 'file system'}: {error.strerror or error}")
+    except Exception:
+        # Python's own exit code for this is 1, which a script would take for a failed check.
+        traceback.print_exc()
+        return _complain("this is a fault of lagnet, not of your input; please report it with the lines above", FAULT)
 
 
 def _complain_of_usage(error: Any) -> int:
