@@ -30,7 +30,10 @@ def unwrap(
     if len(q) < 2:
         return q, ()
     steps = np.diff(q, axis=0) * (np.diff(index) == 0)[:, None]
-    turns = np.round(steps / TURN) * (np.abs(steps) > (1 - NEAR) * TURN) * turning
+    jumps = (np.abs(steps) > (1 - NEAR) * TURN) & turning
+    if not jumps.any():
+        return q, ()
+    turns = np.round(steps / TURN) * jumps
     turns *= np.abs(steps - turns * TURN) < NEAR * TURN
     turns *= np.quantile(np.abs(steps), ORDINARY, axis=0) < CALM * TURN
     if not turns.any():
