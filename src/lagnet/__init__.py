@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from lagnet.models.corrected import NamedEffect as NamedEffect
     from lagnet.models.loading import load_any as load_model
     from lagnet.models.loading import load_any as load_robot
-    from lagnet.plausibility.check import check as check
+    from lagnet.plausibility.suite import check as check
     from lagnet.recordings.load import load_recording as load_recording
     from lagnet.recordings.recording import Recording as Recording
     from lagnet.rigid_body.robot import Robot as Robot
@@ -50,7 +50,7 @@ _PUBLIC = {
     "NamedEffect": "lagnet.models.corrected:NamedEffect",
     "Recording": "lagnet.recordings.recording:Recording",
     "Robot": "lagnet.rigid_body.robot:Robot",
-    "check": "lagnet.plausibility.check:check",
+    "check": "lagnet.plausibility.suite:check",
     "decompose": "lagnet.decomposition.decompose:decompose",
     "diagnose": "lagnet.diagnosis.diagnose:diagnose",
     "load_model": "lagnet.models.loading:load_any",

@@ -18,13 +18,15 @@ from lagnet.diagnosis.grams import collect_grams
 from lagnet.diagnosis.library import Library, build_library
 from lagnet.diagnosis.noise_floor import noise_floor
 from lagnet.diagnosis.problem import Problem, pose_problem
-from lagnet.diagnosis.refit import Refit, refit
+from lagnet.diagnosis.prune import refit_and_prune
+from lagnet.diagnosis.refit import Refit
 from lagnet.diagnosis.rivals import Contest, hold_contests
+from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.models.corrected import CorrectedModel
 from lagnet.recordings.conditioning import Conditioned, condition
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
@@ -113,23 +115,20 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, seed: int) 
     noise = noise_floor(problem, fit, seed)
     library = build_library(problem)
     bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-    judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     noise_power, torque_power = bench.samples * noise**2, bench.samples * problem.scale**2
-    found = settle_on(bench, judge, search_arm(bench, noise_power, torque_power), problem.scale)
-    contests = hold_contests(bench, found)
+    found = search_arm(bench, noise_power, torque_power)
+    wider = look_again(problem, bench, found)
+    if wider is not None:
+        library = wider
+        bench = make_workbench(library, collect_grams(problem, library, problem.fit))
+        found = search_arm(bench, noise_power, torque_power)
+    judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
+    found = settle_on(bench, judge, found, problem.scale)
+    found, fitted = refit_and_prune(problem, bench, found)
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
+    contests = hold_contests(bench, found)
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
-    fitted = refit(problem, named_effects(library, found), sigma)
     return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed)
-
-
-def named_effects(library: Library, found: Found) -> tuple[NamedEffect, ...]:
-    """The selection as effects with the search's parameters, in the order of the selection."""
-    out = []
-    for i in found.selection:
-        h = library.hypotheses[i]
-        out.append(NamedEffect(h.effect, h.joint, h.law.values(found.fit.coefficients[i], dict(h.shape))))
-    return tuple(out)
 
 
 def _divide(

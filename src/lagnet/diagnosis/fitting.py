@@ -54,7 +54,7 @@ def make_workbench(library: Library, grams: Grams) -> Workbench:
 def solve(gram: np.ndarray, moment: np.ndarray, ridge: float = RIDGE) -> np.ndarray:
     """Coefficients of normal equations, batched over leading axes."""
     k = gram.shape[-1]
-    diagonal = np.einsum("...ii->...i", gram)
+    diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
     scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-300))
     scaled = gram * scale[..., :, None] * scale[..., None, :] + ridge * np.eye(k)
     return np.linalg.solve(scaled, (moment * scale)[..., None])[..., 0] * scale
@@ -70,13 +70,15 @@ def joint_loss(bench_total: np.ndarray, folds: np.ndarray, columns: np.ndarray) 
     """
     if not columns.size:
         return float(bench_total[-1, -1]), np.zeros(0)
-    pick = np.ix_(columns, columns)
-    rest = bench_total[None] - folds
-    theta = solve(rest[(slice(None), *pick)], rest[:, columns, -1])
-    inner = folds[(slice(None), *pick)]
-    error = folds[:, -1, -1] - 2.0 * np.sum(theta * folds[:, columns, -1], axis=1)
-    error += np.einsum("fi,fij,fj->f", theta, inner, theta)
-    return float(error.sum()), solve(bench_total[pick], bench_total[columns, -1])
+    across = columns[:, None], columns[None, :]
+    inner, moment = folds[:, *across], folds[:, columns, -1]
+    grams = np.concatenate([bench_total[across][None] - inner, bench_total[across][None]])
+    moments = np.concatenate([bench_total[columns, -1][None] - moment, bench_total[columns, -1][None]])
+    solved = solve(grams, moments)  # without each fold in turn, and last with all
+    theta = solved[:-1]
+    error = folds[:, -1, -1].sum() - 2.0 * np.vdot(theta, moment)
+    error += np.vdot(theta, (inner @ theta[..., None])[..., 0])
+    return float(error), solved[-1]
 
 
 def take_off(gram: np.ndarray, columns: np.ndarray, theta: np.ndarray) -> np.ndarray:

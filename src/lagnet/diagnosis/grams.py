@@ -10,7 +10,7 @@ from lagnet.diagnosis.library import Library
 from lagnet.diagnosis.problem import Piece, Problem
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long against the memory of the residual
-MOST_BLOCKS = 400  # longer recordings get longer blocks
+MOST_BLOCKS = 150  # longer recordings get longer blocks
 FOLDS = 6  # for judging a fit on blocks that it has not seen
 
 

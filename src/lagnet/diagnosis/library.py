@@ -134,4 +134,5 @@ def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodie
 def _head(motion: Motion, n: int = 40) -> Motion:
     rows = slice(0, n)
     time = np.arange(motion.time[rows].size, dtype=float) * 0.01
-    return Motion(time, motion.q[rows], motion.v[rows], motion.a[rows], motion.load[rows], motion.slow, motion.model)
+    signals = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
+    return Motion(time, *signals, motion.slow, motion.model)

@@ -87,11 +87,12 @@ class Problem:
         total = sum(p.keep.size for p in self.fit)
         every = max(1, total // SUMMARY)
         rows = [p.keep[::every] for p in self.fit]
-        pick = {
-            n: np.concatenate([getattr(p, n)[r] for p, r in zip(self.fit, rows, strict=True)])
-            for n in ("time", "q", "v", "a", "load")
-        }
-        return Motion(**pick, slow=self.slow, model=self.nominal)
+        pairs = list(zip(self.fit, rows, strict=True))
+        time, q, v, a, load = (
+            np.concatenate([getattr(p, n)[r] for p, r in pairs]) for n in ("time", "q", "v", "a", "load")
+        )
+        recorded = np.concatenate([low_pass(p.tau, self.rate, self.bandwidth)[r] for p, r in pairs])
+        return Motion(time, q, v, a, load, self.slow, self.nominal, recorded)
 
 
 def pose_problem(nominal: InverseDynamics, fit: Conditioned, holdout: Conditioned) -> Problem:

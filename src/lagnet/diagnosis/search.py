@@ -128,11 +128,14 @@ def improve(view: JointView, start: tuple[int, ...]) -> tuple[int, ...]:
     """Adds, drops and exchanges hypotheses while the evidence grows."""
     selection, score = start, view.score(start)
     for _ in range(ROUNDS):
-        moves = [(view.score(s), s) for s in neighbours(view, selection)]
-        best_score, best = max(moves, key=lambda m: m[0], default=(-np.inf, selection))
-        if best_score <= score + 1e-9:
+        for moves in (plain_moves, exchanges):  # exchanges are many: only where nothing else helps
+            found = [(view.score(s), s) for s in moves(view, selection)]
+            best_score, best = max(found, key=lambda m: m[0], default=(-np.inf, selection))
+            if best_score > score + 1e-9:
+                selection, score = best, best_score
+                break
+        else:
             break
-        selection, score = best, best_score
     return simplify(view, drop_immaterial(view, selection))
 
 
@@ -162,14 +165,21 @@ def drop_immaterial(view: JointView, selection: tuple[int, ...]) -> tuple[int, .
         selection = tuple(i for i in selection if i != worst)
 
 
-def neighbours(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Selections that differ by one added, dropped or exchanged hypothesis."""
+def plain_moves(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Selections with one hypothesis dropped or added."""
+    dropped = [tuple(k for k in selection if k != i) for i in selection]
+    return dropped + _with_one_more(view, selection, selection)
+
+
+def exchanges(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Selections with one hypothesis in the place of another."""
+    dropped = [tuple(k for k in selection if k != i) for i in selection]
+    return [other for base in dropped for other in _with_one_more(view, base, selection)]
+
+
+def _with_one_more(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]) -> list[tuple[int, ...]]:
     local = view.bench.library.local[view.joint]
-    out = [tuple(k for k in selection if k != i) for i in selection]
-    bases = [selection, *out]
-    for base in bases:
-        out.extend((*base, i) for i in local if i not in selection and compatible(view, base, i))
-    return out
+    return [(*base, i) for i in local if i not in tried and compatible(view, base, i)]
 
 
 def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:

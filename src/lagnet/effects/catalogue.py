@@ -7,14 +7,21 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.inertia.link_inertia import LinkInertia
 from lagnet.effects.inertia.payload import Payload
 from lagnet.effects.inertia.rotor_inertia import RotorInertia
+from lagnet.effects.signal.encoder_offset import EncoderOffset
+from lagnet.effects.signal.saturation import Saturation
 from lagnet.effects.signal.time_delay import TimeDelay
 from lagnet.effects.signal.torque_gain import TorqueGain
 from lagnet.effects.signal.torque_offset import TorqueOffset
+from lagnet.effects.state.backlash import Backlash
+from lagnet.effects.state.joint_elasticity import JointElasticity
+from lagnet.effects.state.presliding_hysteresis import PreslidingHysteresis
 from lagnet.effects.torque.asymmetric_friction import AsymmetricFriction
 from lagnet.effects.torque.coulomb_friction import CoulombFriction
 from lagnet.effects.torque.joint_spring import JointSpring
+from lagnet.effects.torque.load_dependent_friction import LoadDependentFriction
 from lagnet.effects.torque.quadratic_drag import QuadraticDrag
 from lagnet.effects.torque.stribeck_friction import StribeckFriction
+from lagnet.effects.torque.torque_ripple import TorqueRipple
 from lagnet.effects.torque.viscous_friction import ViscousFriction
 from lagnet.errors import EffectError, closest
 
@@ -32,6 +39,13 @@ _EFFECTS: tuple[Effect, ...] = (
     TorqueGain(),
     TorqueOffset(),
     TimeDelay(),
+    LoadDependentFriction(),
+    TorqueRipple(),
+    EncoderOffset(),
+    JointElasticity(),
+    Backlash(),
+    PreslidingHysteresis(),
+    Saturation(),
 )
 
 CATALOGUE: dict[str, Effect] = {effect.name: effect for effect in _EFFECTS}

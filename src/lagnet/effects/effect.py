@@ -78,6 +78,14 @@ class Effect(ABC):
         """The values of parameters in which the law is not linear, to be tried one by one; one empty by default."""
         return ({},)
 
+    def proposals(self, motion: Motion, joint: int | None, residual: np.ndarray) -> Sequence[Values]:
+        """Shapes that a residual suggests, for laws whose shapes are too many to try; none by default.
+
+        Args:
+            residual: shape (n,) of the joint, on the samples of the motion.
+        """
+        return ()
+
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coefficients of `columns`."""
         lower = np.array([p.lower for p in self.parameters])

@@ -64,3 +64,11 @@ def needs_position_range(motion: Motion, joint: int, at_least: float = 0.02) -> 
     if needs_motion(motion, joint):
         return needs_motion(motion, joint)
     return None if np.ptp(motion.q[:, joint]) > at_least else "the joint covers hardly any range of positions"
+
+
+def needs_varying_load(motion: Motion, joint: int, at_least: float = 0.1) -> str | None:
+    """None if the size of the load varies by a noticeable part of itself."""
+    load = np.abs(motion.load[:, joint])
+    usual = float(np.mean(load))
+    varies = usual > 0 and float(np.std(load)) > at_least * usual
+    return None if varies else "the load of the joint hardly varies"

@@ -1,0 +1,53 @@
+"""Saturation: a torque that the drive or the sensor cannot exceed."""
+
+from collections.abc import Mapping, Sequence
+from typing import final
+
+import numpy as np
+
+from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.excitation import needs_any_motion
+from lagnet.effects.motion import Motion
+
+PLATEAU = 0.985  # of the largest recorded torque: samples above it lie on the plateau, if there is one
+LEAST_ON_PLATEAU = 0.01  # share of the samples that make a plateau
+
+
+@final
+class Saturation(Effect):
+    """The recording stops at a limit while the motion asks for more: r = clip(τ, ±τ_max) − τ."""
+
+    name = "saturation"
+    title = "Saturation of the torque"
+    formula = "clip(τ, ±τ_max) − τ"
+    parameters = (Parameter("tau_max", "τ_max", "N m", "largest torque that is recorded", lower=0.0),)
+    stage = "signal"
+    shown_by = "motions that ask for high torque"
+    confused_with = ("torque_gain",)
+    source = "swevers2007"
+
+    def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
+        if motion.recorded is None:
+            return ()
+        size = np.abs(motion.recorded[:, joint])
+        limit = float(np.quantile(size, 0.999))
+        on_plateau = float(np.mean(size > PLATEAU * limit))
+        if on_plateau < LEAST_ON_PLATEAU or not np.any(np.abs(motion.load[:, joint]) > limit):
+            return ()
+        return ({"tau_max": limit}, {"tau_max": 0.98 * limit})
+
+    def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
+        return self.torque(motion, joint, shape)[:, None]
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        return np.array([0.5]), np.array([1.5])
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        return {"tau_max": float(shape["tau_max"])}
+
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        load = motion.load[:, joint]
+        return np.clip(load, -values["tau_max"], values["tau_max"]) - load
+
+    def excitation(self, motion: Motion, joint: int) -> str | None:
+        return needs_any_motion(motion)

@@ -1,0 +1,61 @@
+"""Joint elasticity: a gear or belt that gives under load, with the encoder on the motor's side."""
+
+from collections.abc import Mapping
+from typing import final
+
+import numpy as np
+
+from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.excitation import needs_motion
+from lagnet.effects.motion import Motion
+from lagnet.effects.shifted import shifted_torque
+
+SMALL = 1e-3  # rad, size of the bend at which the law is made linear
+
+
+@final
+class JointElasticity(Effect):
+    """The link trails the motor by τ/K, and swings: r = τ(q_l, v_l, a_l) − τ(q, v, a) with q_l = q − τ/K."""
+
+    name = "joint_elasticity"
+    title = "Joint elasticity"
+    formula = "τ(q − τ/K) − τ(q)"
+    parameters = (Parameter("K", "K", "N m/rad", "stiffness of the transmission", lower=1e-3),)
+    reaches_all = True
+    instantaneous = False
+    stage = "body"
+    shown_by = "quick changes of load and acceleration at the joint"
+    confused_with = ("encoder_offset", "link_inertia", "rotor_inertia", "time_delay")
+    source = "swevers2007"
+
+    def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
+        torque = motion.load if motion.recorded is None else motion.recorded
+        size = SMALL / max(float(np.max(np.abs(torque[:, joint]))), 1e-9)
+        return (_bend(motion, joint, torque[:, joint] * size) / size)[..., None]
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros(1), np.full(1, np.inf)
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        return {"K": 1.0 / max(float(coefficients[0]), 1e-12)}
+
+    def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
+        return np.array([1.0 / values["K"]])
+
+    def from_coordinates(self, coordinates: np.ndarray) -> Values:
+        return self.values(coordinates, {})
+
+    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros(1), np.full(1, 1e3)
+
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        return _bend(motion, joint, motion.load[:, joint] / values["K"])
+
+    def excitation(self, motion: Motion, joint: int) -> str | None:
+        return needs_motion(motion, joint)
+
+
+def _bend(motion: Motion, joint: int, bend: np.ndarray) -> np.ndarray:
+    """Torque that changes when the link trails its motor by `bend` [rad], shape (n, dof)."""
+    speed = np.gradient(bend, motion.time)
+    return shifted_torque(motion, joint, -bend, -speed, -np.gradient(speed, motion.time))

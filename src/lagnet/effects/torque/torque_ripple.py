@@ -1,0 +1,84 @@
+"""Torque ripple: a torque that repeats with the angle of motor or gear."""
+
+from collections.abc import Mapping, Sequence
+from typing import final
+
+import numpy as np
+
+from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.excitation import needs_position_range
+from lagnet.effects.motion import Motion
+
+PER_TURN = (2.0, 400.0)  # periods per radian that are tried at all
+RESOLUTION = 0.35  # step of the scan, in periods over the range of the joint
+TOLD = 2  # orders proposed from one residual
+
+
+@final
+class TorqueRipple(Effect):
+    """Magnets, teeth and bearings that are not perfectly round push and pull in turn: r = A sin(N q + φ)."""
+
+    name = "torque_ripple"
+    title = "Torque ripple"
+    formula = "A sin(N q + φ)"
+    parameters = (
+        Parameter("N", "N", "1/rad", "periods per 2π of joint angle", lower=0.0),
+        Parameter("amplitude", "A", "N m", "amplitude", lower=0.0),
+        Parameter("phase", "φ", "rad", "phase at q = 0"),
+    )
+    shown_by = "a slow sweep over the whole range of the joint, sampled fast enough to resolve the ripple"
+    confused_with = ("joint_spring",)
+    source = "swevers2007"
+
+    def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
+        return ()  # orders are not guessed: they are proposed from the residual
+
+    def proposals(self, motion: Motion, joint: int, residual: np.ndarray) -> Sequence[Values]:
+        q, v = motion.q[:, joint], np.abs(motion.v[:, joint])
+        reach = float(np.ptp(q))
+        if reach <= 0 or needs_position_range(motion, joint):
+            return ()
+        step = np.median(np.diff(motion.time))
+        seen = np.quantile(v, 0.3) * step  # of position between samples, when the joint is slow
+        highest = min(PER_TURN[1], np.pi / max(seen, 1e-9))
+        lowest = max(PER_TURN[0], 2.0 * 2.0 * np.pi / reach)
+        if highest <= lowest:
+            return ()
+        orders = np.arange(lowest, highest, RESOLUTION * 2.0 * np.pi / reach)
+        power = _periodogram(q, residual - residual.mean(), orders)
+        found = []
+        for _ in range(TOLD):
+            best = int(np.argmax(power))
+            found.append({"N": float(orders[best])})
+            power[np.abs(orders - orders[best]) < 2.0 * 2.0 * np.pi / reach] = 0.0
+        return tuple(found)
+
+    def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
+        angle = shape["N"] * motion.q[:, joint]
+        return np.column_stack([np.sin(angle), np.cos(angle)])
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        return np.full(2, -np.inf), np.full(2, np.inf)
+
+    def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
+        sine, cosine = map(float, coefficients)
+        return {
+            "N": float(shape["N"]),
+            "amplitude": float(np.hypot(sine, cosine)),
+            "phase": float(np.arctan2(cosine, sine)),
+        }
+
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        return values["amplitude"] * np.sin(values["N"] * motion.q[:, joint] + values["phase"])
+
+    def excitation(self, motion: Motion, joint: int) -> str | None:
+        return needs_position_range(motion, joint)
+
+
+def _periodogram(q: np.ndarray, residual: np.ndarray, orders: np.ndarray) -> np.ndarray:
+    """Power of the residual at each order, shape (n_orders,), in slices that bound the memory."""
+    power = np.empty(orders.size)
+    for start in range(0, orders.size, 64):
+        wave = np.exp(-1j * np.outer(orders[start : start + 64], q))
+        power[start : start + 64] = np.abs(wave @ residual) ** 2
+    return power
