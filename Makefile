@@ -1,26 +1,42 @@
-# The README's two commands: `make demo` and `make test`. Each sets up .venv on a fresh machine by itself.
-PYTHON ?= python3
+# The README's two commands are `make demo` and `make test`. Each sets up .venv on a fresh machine by itself.
+PYTHON ?= $(firstword $(foreach name,python3.13 python3.12 python3.11 python3,$(shell command -v $(name) 2>/dev/null)))
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: demo test lint types imports wheel lock clean
+.PHONY: help demo test lint types imports wheel docs lock clean
 
+help:
+	@echo "make demo     hide an effect in a simulated arm, diagnose it, open the envelope"
+	@echo "make test     run the tests (PYTEST_ARGS='-k friction' for some of them)"
+	@echo "make lint     ruff: rules and format"
+	@echo "make types    pyright"
+	@echo "make imports  the order of the rooms"
+	@echo "make wheel    build dist/*.whl"
+	@echo "make docs     write again what is generated: catalogue, figures from result files"
+	@echo "make lock     write requirements.lock from .venv"
+
+# requirements.lock pins what was tried together; the package itself is installed in place, for both targets alike.
 $(STAMP): pyproject.toml requirements.lock
+	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or newer" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "$(PYTHON) is older than Python 3.11: install a newer one and set PYTHON=/path/to/it" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	$(PIP) install -r requirements.lock
+	$(PIP) install --no-deps --no-build-isolation -e .
 	@touch $@
 
 demo: $(STAMP)
 	$(BIN)/lagnet demo --out lagnet-demo
 
+# One thread a worker: two workers share two cores, and linear algebra of this size gains nothing from more.
 test: $(STAMP)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_ARGS)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_ARGS)
 
 lint: $(STAMP)
-	$(BIN)/ruff check src tests validation
-	$(BIN)/ruff format --check src tests validation
+	$(BIN)/ruff check src tests validation docs
+	$(BIN)/ruff format --check src tests validation docs
 
 types: $(STAMP)
 	$(BIN)/pyright
@@ -30,9 +46,13 @@ imports: $(STAMP)
 
 wheel: $(STAMP)
 	rm -rf dist
-	$(BIN)/python -m build --wheel --outdir dist
+	$(BIN)/python -m build --wheel --no-isolation --outdir dist
 
-lock:
+docs: $(STAMP)
+	$(BIN)/python docs/make_catalogue.py
+	$(BIN)/python docs/fill_figures.py
+
+lock: $(STAMP)
 	$(BIN)/python -m pip freeze --exclude-editable --exclude lagnet > requirements.lock
 
 clean:
