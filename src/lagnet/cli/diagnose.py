@@ -43,14 +43,14 @@ def command(
             where="--robot",
             next_step="give --robot a URDF, MJCF, name or a folder of train or diagnose",
         )
-    from lagnet.cli.console import say
+    from lagnet.cli.console import numbers, say
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.writing import write_diagnosis
     from lagnet.models.loading import load_any
     from lagnet.recordings.load import load_recording
     from lagnet.reports.diagnosis_report import write_report
 
-    constants = [float(x) for x in torque_constant.split(",")] if torque_constant else None
+    constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
     model = load_any(robot)
     read = [
         [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]

@@ -157,7 +157,8 @@ def left_over(inquiry: Inquiry) -> Leftover:
     for pieces in (problem.fit, problem.holdout):
         rest = [problem.reduce(p, p.tau - torque_with(p.motion(problem), inquiry.refit.effects)) for p in pieces]
         parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
-    return Leftover(*parts, signals_of(problem, problem.fit), signals_of(problem, problem.holdout))
+    seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
+    return Leftover(parts[0], parts[1], seen, unseen)
 
 
 def _power(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:

@@ -134,5 +134,5 @@ def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodie
 def _head(motion: Motion, n: int = 40) -> Motion:
     rows = slice(0, n)
     time = np.arange(motion.time[rows].size, dtype=float) * 0.01
-    signals = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
-    return Motion(time, *signals, motion.slow, motion.model)
+    q, v, a, load = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
+    return Motion(time, q, v, a, load, motion.slow, motion.model)

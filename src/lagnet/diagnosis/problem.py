@@ -128,8 +128,10 @@ def blurred_speed(conditioned: Conditioned) -> np.ndarray:
     v = np.concatenate([s.v for s in conditioned.stretches])
     a = np.concatenate([s.a for s in conditioned.stretches])
     usual, change = np.sqrt(np.mean(v**2, axis=0)), np.sqrt(np.mean(a**2, axis=0)) / conditioned.rate
-    floor = 0.003 * float(np.max(usual)) if usual.size else 0.0
-    return np.maximum.reduce([2.5 * conditioned.noise_v, 0.5 * change, 0.01 * usual, np.full_like(usual, floor + 1e-9)])
+    floor = 0.001 * float(np.max(usual)) if usual.size else 0.0
+    return np.maximum.reduce(
+        [2.5 * conditioned.noise_v, 0.5 * change, 0.003 * usual, np.full_like(usual, floor + 1e-9)]
+    )
 
 
 def _pieces(problem: Problem, conditioned: Conditioned) -> Iterator[Piece]:

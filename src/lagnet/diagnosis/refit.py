@@ -15,12 +15,19 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import Effect
 from lagnet.models.corrected import NamedEffect, torque_with
 from lagnet.rigid_body.consistent_fit import fit_consistent
-from lagnet.rigid_body.inertia import is_physically_consistent, parameters_of_body
+from lagnet.rigid_body.inertia import (
+    from_pseudo_inertia,
+    is_physically_consistent,
+    parameters_of_body,
+    pseudo_inertia,
+)
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
 RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
+BODIES = 2  # rounds over the bodies: making one consistent moves the others
+CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -78,7 +85,8 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
     slots = _Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
     work = _Work(problem, spread(problem.fit), sigma, slots)
     x = work.descend(np.clip(np.concatenate(parts), *slots.bounds()), np.ones(int(slots.starts[-1]), dtype=bool))
-    x = _make_consistent(work, x)
+    for _ in range(BODIES):
+        x = _make_consistent(work, x)
     covariance, freedom = work.covariance(x)
     return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), _correlations(covariance))
 
@@ -213,9 +221,23 @@ def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
         schur = gram[np.ix_(own, own)] - (cross @ _inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
         schur = 0.5 * (schur + schur.T)
         x = x.copy()
-        x[own] = fit_consistent(schur, schur @ (base + x[own]), _prior(base, base + x[own])) - base
+        x[own] = _nearest_body(schur, base + x[own], _prior(base, base + x[own])) - base
         x = work.descend(x, np.isin(np.arange(x.size), rest))
     return x
+
+
+def _nearest_body(gram: np.ndarray, wanted: np.ndarray, prior: np.ndarray) -> np.ndarray:
+    """The real body whose torque is nearest to that of the wanted parameters, shape (10,).
+
+    Where the data leave so much open that the fit has no minimum in reach, negative principal values are cut off.
+    """
+    moment = gram @ wanted
+    try:
+        return fit_consistent(gram, moment, prior, weight=CONSISTENCY * max(float(wanted @ moment), 1e-12))
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
+        least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
+        return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
 
 
 def _body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:

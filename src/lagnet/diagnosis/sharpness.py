@@ -8,7 +8,7 @@ import numpy as np
 
 from lagnet.diagnosis.problem import Problem
 
-FACTORS = (0.3, 1.0, 3.0, 8.0)  # of the blurred speed
+FACTORS = (0.3, 1.0, 3.0, 9.0, 27.0)  # of the blurred speed
 CLEAR = 0.97  # of the error at the blurred speed itself, below which another sharpness is taken
 STRONG = 0.02  # of the residual that dry friction must explain before its sharpness means anything
 

@@ -11,6 +11,7 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError
+from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, JointVector, MassMatrix, Samples, Trajectory
 
 STAGES = ("body", "torque", "signal")
@@ -170,6 +171,23 @@ def torque_along(model: Any, time: Samples, q: Trajectory, v: Trajectory, a: Tra
     return model.inverse_dynamics(q, v, a)
 
 
+def has_real_bodies(model: CorrectedModel) -> bool:
+    """Whether some distribution of mass has every corrected body, so that a robot file may hold it."""
+    changed = changed_bodies(model.nominal, model.effects) != model.nominal.inertial_parameters()
+    rows = changed.any(axis=1)
+    return bool(np.all(is_physically_consistent(changed_bodies(model.nominal, model.effects)[rows])))
+
+
+def changed_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> np.ndarray:
+    """Ten inertial parameters of every link with payload and link changes added, shape (dof, 10)."""
+    parameters = nominal.inertial_parameters().copy()
+    for effect in effects:
+        law: Any = effect_named(effect.effect)
+        if law.name in ("payload", "link_inertia"):
+            parameters[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
+    return parameters
+
+
 def apply_to_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> Any:
     """A robot with payload, link changes and tilt of the base in its description.
 
@@ -180,11 +198,9 @@ def apply_to_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> Any:
         return apply_to_bodies(nominal.bodies(), effects)
     if not hasattr(nominal, "with_inertial_parameters"):
         raise EffectError("the nominal model has no bodies to write into")
-    parameters, robot = nominal.inertial_parameters().copy(), nominal
+    robot = nominal
     for effect in effects:
         law: Any = effect_named(effect.effect)
-        if law.name in ("payload", "link_inertia"):
-            parameters[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
         if law.name == "gravity_tilt":
             robot = robot.with_gravity(law.gravity_of(robot.gravity, effect.values))
-    return robot.with_inertial_parameters(parameters)
+    return robot.with_inertial_parameters(changed_bodies(nominal, effects))

@@ -13,7 +13,7 @@ import numpy as np
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import LagnetError, ModelError
-from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.models.corrected import CorrectedModel, NamedEffect, has_real_bodies
 from lagnet.rigid_body.robot import Robot
 
 FORMAT = 1
@@ -41,7 +41,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         ],
     }
     (out / FILE).write_text(json.dumps(text, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    if isinstance(model.nominal, Robot):
+    if isinstance(model.nominal, Robot) and has_real_bodies(model):
         write_description(model.bodies(), out / "robot")
     return out
 
