@@ -56,7 +56,7 @@ FIRST_SET: dict[str, Draw] = {
     "joint_spring": _spring,
     "torque_gain": lambda s, j, size, rng: {"g": 1 + _sign(rng) * size},
     "torque_offset": lambda s, j, size, rng: {"b": _sign(rng) * size * s.torque[j]},
-    "time_delay": lambda s, j, size, rng: {"T": float(np.clip(size * s.torque[j] / s.torque_rate[j], 1e-3, 0.025))},
+    "time_delay": lambda s, j, size, rng: {"T": float(np.clip(size * s.torque[j] / s.torque_rate[j], 1e-3, 0.04))},
 }
 WHOLE_ARM = {"payload", "gravity_tilt"}
 

@@ -29,10 +29,11 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One true run at the plant's step: q, v and motor torque at the same instants, shape (n, dof)."""
+    """One true run at the plant's step: q, v, a and motor torque at the same instants, shape (n, dof)."""
 
     q: np.ndarray
     v: np.ndarray
+    a: np.ndarray
     tau: np.ndarray
     step: float
 
@@ -95,7 +96,7 @@ def run(truth: Truth, robot: str, wanted: Reference) -> Run:
     nominal, plant = Body(robot, step=step), Body(robot, truth.body, step=step)
     omega = _bandwidth(robot, step)
     n, dof = wanted.q.shape
-    seen = np.empty((3, n, dof))
+    seen = np.empty((4, n, dof))
     plant.put(wanted.q[0], wanted.v[0] - step / 2 * wanted.a[1])
     a = wanted.a[1]
     for k in range(n):
@@ -106,10 +107,10 @@ def run(truth: Truth, robot: str, wanted: Reference) -> Run:
         h = plant.bias(q, v_mid)
         links, a = truth.drive.transmit(tau, q, v, v_mid, plant.inertia(q), h, step)
         plant.push(links + plant.bias(q, v) - h)
-        seen[:, k] = q, v + step / 2 * a, tau
+        seen[:, k] = q, v + step / 2 * a, a, tau
     nominal.close()
     plant.close()
-    return Run(*seen, step)
+    return Run(seen[0], seen[1], seen[2], seen[3], step)
 
 
 def _bandwidth(robot: str, step: float) -> np.ndarray:
@@ -118,11 +119,16 @@ def _bandwidth(robot: str, step: float) -> np.ndarray:
     return np.clip(np.sqrt(scale.torque / (0.01 * scale.inertia)), 40.0, 0.15 / step)
 
 
-def simulate_plant(spec: PlantSpec, folder: Path) -> None:
-    """Write three recordings to fit and one to hold out into `folder`; the truth is not among them."""
+def simulate_plant(spec: PlantSpec, folder: Path) -> np.ndarray:
+    """Write three recordings to fit and one to hold out into `folder`; the truth is not among them.
+
+    Returns:
+        What the held-out torque truly has beyond the nominal bodies, without noise, at the recorded samples, (n, dof).
+    """
     truth = build(spec)
     folder.mkdir(parents=True, exist_ok=True)
     names = [f"fit_{i}" for i in range(len(FIT_SHAPES))] + ["holdout"]
+    beyond = np.empty((0, 0))
     for index, (name, shape) in enumerate(zip(names, (*FIT_SHAPES, HOLDOUT_SHAPE), strict=True)):
         rng = np.random.default_rng([spec.seed, index])
         settings = MotionSettings(spec.duration, spec.step_rate, speed_share=spec.speed_share)
@@ -130,6 +136,17 @@ def simulate_plant(spec: PlantSpec, folder: Path) -> None:
         every = round(spec.step_rate / spec.rate)
         columns = truth.sensors.record(true_run.q, true_run.v, true_run.tau, true_run.step, every, rng)
         write_csv(folder / f"{name}.csv", columns)
+        beyond = _beyond(spec.robot, truth.sensors, true_run, every)
+    return beyond
+
+
+def _beyond(robot: str, sensors: Sensors, true_run: Run, every: int) -> np.ndarray:
+    shown = sensors.delayed(true_run.tau * sensors.gain + sensors.offset, true_run.step)[::every]
+    body = Body(robot, step=true_run.step)
+    rows = zip(true_run.q[::every], true_run.v[::every], true_run.a[::every], strict=True)
+    rigid = [body.inertia(q) @ a + body.bias(q, v) for q, v, a in rows]
+    body.close()
+    return shown - np.stack(rigid)
 
 
 def write_csv(path: Path, columns: dict[str, np.ndarray]) -> None:
