@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.decomposition.offers import offers
 from lagnet.decomposition.terms import CHUNK, Terms
 from lagnet.types import Samples, Trajectory
 
@@ -79,7 +80,7 @@ def _kinetic(model: Any, q: Trajectory, v: Trajectory) -> Samples:
 def _potential(
     model: Any, time: Samples, trajectory: np.ndarray, q: Trajectory, v: Trajectory, gravity: Trajectory
 ) -> Samples:
-    if callable(getattr(model, "potential_energy", None)):
+    if offers(model, "potential_energy"):
         energy = np.asarray(model.potential_energy(q), dtype=float)
         return energy - energy[_begin(trajectory)]
     return _integral(time, trajectory, np.sum(gravity * v, axis=1))

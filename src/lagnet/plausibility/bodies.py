@@ -12,6 +12,8 @@ from lagnet.plausibility.check import NotApplicable
 from lagnet.plausibility.subject import Subject
 from lagnet.rigid_body.inertia import tensor_about_com, tensor_about_origin
 
+LEAST_INERTIA = 1e-14  # [kg m²] a hundredth of a gram square millimetre: less than any link that moves has
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -37,6 +39,11 @@ class Body:
     def moments(self) -> np.ndarray:
         """Principal moments about the centre of mass, ascending, shape (3,), [kg m²]."""
         return np.linalg.eigvalsh(self.inertia)
+
+    @property
+    def has_inertia(self) -> bool:
+        """Whether its moments of inertia were given at all."""
+        return bool(np.abs(self.inertia).max() > LEAST_INERTIA)
 
     @property
     def radius_of_gyration(self) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 
 from lagnet.decomposition.agreement import Agreement, agreement, blocks_of, variance_floor
 from lagnet.decomposition.motion_of import motion_of
+from lagnet.decomposition.offers import offers
 from lagnet.decomposition.terms import Terms, terms_of
 from lagnet.plausibility.check import Finding, NotApplicable
 from lagnet.plausibility.subject import Subject
@@ -23,7 +24,7 @@ def term_limit(subject: Subject) -> float:
 
 def has_residual(subject: Subject) -> bool:
     """Whether the reference says what lies beyond mechanics; one that does not has nothing to compare ε with."""
-    return callable(getattr(subject.reference, "residual_torque", None))
+    return subject.reference is not None and offers(subject.reference, "residual_torque")
 
 
 def compare(subject: Subject, term: str) -> Finding:

@@ -1,7 +1,8 @@
-"""The model under examination, called with care: few batch sizes, checked shapes, finite numbers, its own rounding."""
+"""The model under examination, called with care: one batch size, checked shapes, finite numbers, its own rounding."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.decomposition.offers import offers
 from lagnet.errors import ModelError
 from lagnet.plausibility.ranges import Ranges, ranges_of
 from lagnet.plausibility.settings import CheckSettings
@@ -16,7 +18,8 @@ from lagnet.recordings.recording import Recording
 from lagnet.types import JointVector, MassMatrix, Trajectory
 
 CALLS = ("inverse_dynamics", "mass_matrix", "coriolis_torque", "gravity_torque")
-SIZES = (8, 64, 1024)  # the only batch sizes that a model sees: compiled models compile three times, not for every call
+BATCH = 32  # the only batch size that a compiled model sees: it compiles once a call, not for every number of rows
+COMPILING = 0.1, 5.0  # [s] and ratio by which a first call outlasts the second, if the model compiles
 COARSEST_ROUNDING = 1e-6  # single precision; a model that is noisier gets no slack for it
 
 
@@ -45,6 +48,7 @@ class Subject:
     recordings: tuple[Recording, ...] = ()
     settings: CheckSettings = field(default_factory=CheckSettings)
     seed: int = 0
+    _offered: dict[str, bool] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         require_calls(self.model)
@@ -71,8 +75,10 @@ class Subject:
         return ranges_of(self.model, self.reference, self.recordings)
 
     def offers(self, call: str) -> bool:
-        """Whether the model has a call beyond the four of InverseDynamics."""
-        return callable(getattr(self.model, call, None))
+        """Whether the model has a call of its own beyond the four of InverseDynamics."""
+        if call not in self._offered:
+            self._offered[call] = offers(self.model, call)
+        return self._offered[call]
 
     def torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Total torque of the model, shape (n, dof)."""
@@ -99,26 +105,38 @@ class Subject:
         return self.call("gravity_torque", q)
 
     def call(self, name: str, *arrays: Trajectory) -> np.ndarray:
-        """One call of the model in batches of a few fixed sizes.
+        """One call of the model, in batches of one size if it compiles.
 
         Raises:
             ModelError: the call fails, or gives an array of another shape.
             NotFinite: it gives a number that is not finite.
         """
-        n = len(arrays[0])
-        size = next((s for s in SIZES if n <= s), SIZES[-1])
-        pieces = []
-        for start in range(0, n, size):
-            rows = [array[start : start + size] for array in arrays]
-            short = size - len(rows[0])
-            padded = [np.concatenate([r, np.repeat(r[-1:], short, axis=0)]) for r in rows] if short else rows
-            pieces.append(self._answer(name, padded)[: len(rows[0])])
-        out = np.concatenate(pieces) if len(pieces) > 1 else pieces[0]
-        good = np.isfinite(out.reshape(n, -1)).all(axis=1)
+        out = self._in_batches(name, arrays) if self.compiles else self._answer(name, list(arrays))
+        good = np.isfinite(out.reshape(len(out), -1)).all(axis=1)
         if not good.all():
             bad = int(np.flatnonzero(~good)[0])
             raise NotFinite(name, {s: array[bad].tolist() for s, array in zip("qva", arrays, strict=False)})
         return out
+
+    @cached_property
+    def compiles(self) -> bool:
+        """Whether the model compiles anew for every shape of its arrays, as those in JAX do: seen by its first call."""
+        rows, took = [np.repeat(x, BATCH, axis=0) for x in self.random(1, salt=14)], []
+        for _ in range(2):
+            begin = time.perf_counter()
+            self._answer("inverse_dynamics", rows)
+            took.append(time.perf_counter() - begin)
+        least, ratio = COMPILING
+        return took[0] > least and took[0] > ratio * took[1]
+
+    def _in_batches(self, name: str, arrays: tuple[Trajectory, ...]) -> np.ndarray:
+        pieces = []
+        for start in range(0, len(arrays[0]), BATCH):
+            rows = [array[start : start + BATCH] for array in arrays]
+            short = BATCH - len(rows[0])
+            padded = [np.concatenate([r, np.repeat(r[-1:], short, axis=0)]) for r in rows] if short else rows
+            pieces.append(self._answer(name, padded)[: len(rows[0])])
+        return np.concatenate(pieces)
 
     def _answer(self, name: str, arrays: list[np.ndarray]) -> np.ndarray:
         n, dof = arrays[0].shape

@@ -21,6 +21,10 @@ class EnergyAlongMotion(Check):
     meaning = "The model makes or loses energy in motion although nothing rubs."
     unit = "1/s"
     justification = "Exact in mechanics; 1e-7 of the work of typical torques a second is the error of integration."
+    stays_because = (
+        "energies that disagree with the torques show in free falls too, but those need forward dynamics that can be "
+        "followed; this one needs inverse dynamics alone"
+    )
 
     def limit(self, subject: Subject) -> float:
         return max(1e-7, 1e2 * subject.rounding)

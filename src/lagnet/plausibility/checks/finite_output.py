@@ -16,6 +16,9 @@ class FiniteOutput(Check):
     meaning = "A number that is not finite ends a simulation and poisons whatever is fitted to it."
     unit = "calls"
     justification = "Not one may be broken."
+    stays_because = (
+        "a number that is not finite stops other checks, which then do not apply; bounded_growth may meet it as well"
+    )
 
     def limit(self, subject: Subject) -> float:
         return 0.0

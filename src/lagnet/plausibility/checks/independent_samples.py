@@ -7,7 +7,7 @@ import numpy as np
 from lagnet.plausibility.check import Check, Finding
 from lagnet.plausibility.subject import Subject
 
-SAMPLES = 32
+SAMPLES, ALONE = 32, 8  # rows compared in a batch, and of these alone (a compiled model sees copies of the row)
 
 
 class IndependentSamples(Check):
@@ -17,6 +17,7 @@ class IndependentSamples(Check):
     title = "a sample's torque depends on that sample alone"
     meaning = "A model whose answer depends on its neighbours in a batch, or on chance, is no function of the motion."
     justification = "Batched and single calls may round differently, a thousand roundings at most."
+    stays_because = "other checks compare calls on batches too and fail for the wrong reason; this one names the cause"
 
     def limit(self, subject: Subject) -> float:
         return subject.at_least_rounding(1e-9)
@@ -26,12 +27,11 @@ class IndependentSamples(Check):
         order = np.random.default_rng(subject.seed).permutation(SAMPLES)
         missed = np.zeros(SAMPLES)
         for name, arrays, scale in self._calls(subject, q, v, a):
-            call = getattr(subject.model, name)
             batch = np.empty_like(first := subject.call(name, *arrays))
             batch[order] = subject.call(name, *(array[order] for array in arrays))
-            alone = np.stack([np.asarray(call(*(x[k : k + 1] for x in arrays)), dtype=float)[0] for k in range(8)])
+            alone = np.stack([subject.call(name, *(x[k : k + 1] for x in arrays))[0] for k in range(ALONE)])
             missed = np.maximum(missed, self._size(batch - first, scale))
-            missed[:8] = np.maximum(missed[:8], self._size(alone - first[:8], scale))
+            missed[:ALONE] = np.maximum(missed[:ALONE], self._size(alone - first[:ALONE], scale))
         k = int(np.argmax(missed))
         where = {"q": q[k].tolist(), "v": v[k].tolist(), "a": a[k].tolist()}
         return Finding(

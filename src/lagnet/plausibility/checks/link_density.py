@@ -26,7 +26,7 @@ class LinkDensity(Check):
         return 10 * DENSEST
 
     def find(self, subject: Subject) -> Finding:
-        heavy = [b for b in moving_bodies(subject) if b.mass > 0 and b.radius_of_gyration > 0]
+        heavy = [b for b in moving_bodies(subject) if b.mass > 0 and b.has_inertia]
         if not heavy:
             raise NotApplicable("no body has mass and inertia")
         worst = max(heavy, key=_density)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import Body, every_body
+from lagnet.plausibility.bodies import LEAST_INERTIA, Body, every_body
 from lagnet.plausibility.check import Check, Finding, NotApplicable
 from lagnet.plausibility.subject import Subject
 
@@ -20,10 +20,9 @@ class LinkInertiaGiven(Check):
     unit = "kg m²"
     justification = "A hundredth of a gram square millimetre (1e-14 kg m²) is less than any link that moves has."
     at_least = True
-    stays_because = "link_pseudo_inertia leaves bodies without inertia to this check, which names the empty field"
 
     def limit(self, subject: Subject) -> float:
-        return 1e-14
+        return LEAST_INERTIA
 
     def find(self, subject: Subject) -> Finding:
         heavy = [b for b in every_body(subject) if b.mass > LIGHTEST]

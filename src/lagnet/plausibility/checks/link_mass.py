@@ -16,9 +16,6 @@ class LinkMass(Check):
     unit = "kg"
     justification = "Positive by definition; a milligram is less than any link weighs."
     at_least = True
-    stays_because = (
-        "the pseudo-inertia of a massless body is not positive definite either; this names the number to mend"
-    )
 
     def limit(self, subject: Subject) -> float:
         return 1e-6

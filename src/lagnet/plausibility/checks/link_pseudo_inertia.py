@@ -25,7 +25,7 @@ class LinkPseudoInertia(Check):
         return 1e-6
 
     def find(self, subject: Subject) -> Finding:
-        heavy = [b for b in every_body(subject) if b.mass > 0 and np.abs(b.inertia).max() > 0]
+        heavy = [b for b in every_body(subject) if b.mass > 0 and b.has_inertia]
         if not heavy:
             raise NotApplicable("no body has mass and inertia")
         worst = min(heavy, key=_thinness)

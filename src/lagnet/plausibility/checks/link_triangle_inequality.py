@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from lagnet.plausibility.bodies import Body, every_body
 from lagnet.plausibility.check import Check, Finding, NotApplicable
 from lagnet.plausibility.subject import Subject
@@ -25,7 +23,7 @@ class LinkTriangleInequality(Check):
         return 1e-3
 
     def find(self, subject: Subject) -> Finding:
-        heavy = [b for b in every_body(subject) if b.mass > 0 and np.abs(b.inertia).max() > 0]
+        heavy = [b for b in every_body(subject) if b.mass > 0 and b.has_inertia]
         if not heavy:
             raise NotApplicable("no body has mass and inertia")
         worst = max(heavy, key=_excess)

@@ -16,6 +16,10 @@ class MassMatrixSymmetric(Check):
     title = "the mass matrix is symmetric"
     meaning = "Kinetic energy has one value only if joint i feels joint j as j feels i."
     justification = "Exact in mechanics; a thousand roundings are allowed."
+    stays_because = (
+        "an arm whose torque follows an asymmetric H also breaks the energy balance; this names the two entries, and "
+        "needs no motion"
+    )
 
     def limit(self, subject: Subject) -> float:
         return subject.at_least_rounding(1e-9)

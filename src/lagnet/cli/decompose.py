@@ -1,0 +1,48 @@
+"""`lagnet decompose`: split a model's torque along recordings, to a folder with table, summary and report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    model: Annotated[
+        str, typer.Argument(help="A folder written by train or diagnose, a URDF or MJCF, or a name such as ur5.")
+    ],
+    recordings: Annotated[list[Path], typer.Argument(help="Recordings (.csv, .csv.gz, .parquet, .npz, .mat).")],
+    reference: Annotated[
+        str | None, typer.Option(help="A model that is believed, compared term by term; same forms as MODEL.")
+    ] = None,
+    member: Annotated[
+        list[str] | None, typer.Option(help="Further model of an ensemble, whose spread becomes a band; repeatable.")
+    ] = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
+    ] = None,
+    torque_constant: Annotated[
+        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("decomposition"),
+    seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
+) -> None:
+    """Split the torque into inertial, Coriolis, gravity and residual parts."""
+    from lagnet.cli.console import say
+    from lagnet.decomposition.decompose import decompose
+    from lagnet.decomposition.writing import write_decomposition
+    from lagnet.models.loading import load_any
+    from lagnet.recordings.load import load_recording
+    from lagnet.reports.decomposition_report import write_decomposition_report
+
+    constants = [float(x) for x in torque_constant.split(",")] if torque_constant else None
+    models = [load_any(spec) for spec in (model, *(member or []))]
+    believed = load_any(reference) if reference else None
+    read = [load_recording(p, robot=models[0], columns=columns, torque_constant=constants) for p in recordings]
+    parts = decompose(models if member else models[0], read, believed, seed=seed)
+    write_decomposition(parts, out)
+    page = write_decomposition_report(parts, model, reference, out / "report.html")
+    for joint, error, share in zip(parts.joints, parts.total_error.nmse, parts.shares["residual"], strict=True):
+        say(f"{joint}: nMSE of the total torque {error:.3g}, share of the residual {100 * share:.1f} %")
+    say(f"report: {page}")
