@@ -1,0 +1,50 @@
+"""`lagnet demo`: the main job on a case of our own, with the truth in an envelope that the diagnosis never sees."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ROBOT = "ur5"
+
+
+def command(
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("lagnet-demo"),
+    seed: Annotated[int, typer.Option(help="Which effects are hidden, and all noise.")] = 4,
+) -> None:
+    """Hide an effect in a simulated arm, diagnose it, open the envelope and compare."""
+    from lagnet.cli.console import say
+    from lagnet.cli.envelope import compare, seal
+    from lagnet.diagnosis.diagnose import diagnose
+    from lagnet.diagnosis.writing import write_diagnosis
+    from lagnet.models.loading import load_any
+    from lagnet.recordings.load import load_recording
+    from lagnet.recordings.writing import write_recording
+    from lagnet.reports.diagnosis_report import write_report
+    from lagnet.simulation.simulate import SimulationSettings, trajectories, truth
+    from lagnet.simulation.surprise import draw_surprise
+
+    robot = load_any(ROBOT)
+    hidden, settings = draw_surprise(robot, seed), SimulationSettings(trajectories=4, seed=seed)
+    recordings = out / "recordings"
+    recordings.mkdir(parents=True, exist_ok=True)
+    say(
+        f"1. Physics is hidden in a {ROBOT.upper()}; the envelope has sha256 {seal(truth(robot, hidden, settings), out)}"
+    )
+    paths = []
+    for index, recording in enumerate(trajectories(robot, hidden, settings)):
+        paths.append(write_recording(recording, recordings / f"trajectory_{index}.csv"))
+        say(f"   recorded {paths[-1]}")
+    say("2. The diagnosis is given the recordings and the plain URDF")
+    read = [load_recording(path, robot=robot) for path in paths]
+    result = diagnose(read[:-1], robot, read[-1:], seed=seed)
+    write_diagnosis(result, out)
+    page = write_report(result.verdict.to_dict(), result.evidence, out / "report.html")
+    for effect in result.effects:
+        say(f"   {effect.explanation}")
+    say("3. The envelope is opened")
+    for line in compare(out, result.verdict.to_dict()):
+        say(f"   {line}")
+    say(f"report: {page.resolve()}")
