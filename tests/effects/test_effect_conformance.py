@@ -20,11 +20,29 @@ NOTHING = 1e-6  # of the torque: what an effect without size may add (an elastic
 SMALL = 1e-4  # size of coefficients at which the linearised law must stand for the exact one
 SLOPE = 0.05  # relative error of the linearised law at that size: curvature, and finite differences in columns
 
-NAMES = (  # the words that stand in verdicts
-    "viscous_friction coulomb_friction asymmetric_friction stribeck_friction load_dependent_friction quadratic_drag "
-    "rotor_inertia payload link_inertia gravity_tilt joint_spring torque_ripple torque_gain torque_offset "
-    "encoder_offset time_delay joint_elasticity backlash presliding_hysteresis contact_force saturation"
-).split()
+NAMES = [  # the words that stand in verdicts
+    "viscous_friction",
+    "coulomb_friction",
+    "asymmetric_friction",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "quadratic_drag",
+    "rotor_inertia",
+    "payload",
+    "link_inertia",
+    "gravity_tilt",
+    "joint_spring",
+    "torque_ripple",
+    "torque_gain",
+    "torque_offset",
+    "encoder_offset",
+    "time_delay",
+    "joint_elasticity",
+    "backlash",
+    "presliding_hysteresis",
+    "contact_force",
+    "saturation",
+]
 UNIT = re.compile(r"–|(1/)?(N|kg|m|s|rad|N m|kg m)[²³]?( (m|s|rad)[²³]?)*(/(N|kg|m|s|rad)[²³]?( (m|s)[²³]?)*)?")
 EFFECTS = [pytest.param(effect, id=name) for name, effect in CATALOGUE.items()]
 every_effect = pytest.mark.parametrize("effect", EFFECTS)
@@ -76,12 +94,15 @@ def test_names_its_relatives_by_names_of_the_catalogue(effect: Effect) -> None:
 @every_effect
 def test_parameters_are_documented(effect: Effect) -> None:
     names = [p.name for p in effect.parameters]
-    assert names and len(set(names)) == len(names)
+    assert names
+    assert len(set(names)) == len(names)
     for parameter in effect.parameters:
-        assert parameter.symbol and parameter.meaning
+        assert parameter.symbol
+        assert parameter.meaning
         assert UNIT.fullmatch(parameter.unit), parameter.unit
         assert parameter.lower < parameter.upper
-        assert "rad" not in parameter.unit_for(prismatic=True) and "N m" not in parameter.unit_for(prismatic=True)
+        assert "rad" not in parameter.unit_for(prismatic=True)
+        assert "N m" not in parameter.unit_for(prismatic=True)
 
 
 @every_effect
@@ -96,7 +117,8 @@ def test_columns_are_finite_and_of_the_right_shape(effect: Effect, ur5, sweep, s
         reach = (ur5.n_dof,) if effect.reaches_all else ()
         assert columns.shape == (motion.time.size, *reach, lower.size)
         assert np.isfinite(columns).all()
-        assert upper.shape == lower.shape and np.all(lower <= upper)
+        assert upper.shape == lower.shape
+        assert np.all(lower <= upper)
 
 
 @every_effect
@@ -151,12 +173,14 @@ def test_bounds_agree_with_one_another(effect: Effect, ur5, sweep, shapes_of, se
     joint = pick_joint(effect, ur5.n_dof, seed)
     _, shapes = shapes_of(effect, sweep(ur5, seed).motion, joint)
     lower, upper = effect.coordinate_bounds()
-    assert lower.shape == upper.shape and np.all(lower < upper)
+    assert lower.shape == upper.shape
+    assert np.all(lower < upper)
     for shape in shapes[:3]:
         values = effect.values(coefficients_inside(effect, shape, 0.2, rng), shape)
         coordinates = effect.coordinates(values)
         assert coordinates.shape == lower.shape
-        assert np.all(coordinates >= lower) and np.all(coordinates <= upper)
+        assert np.all(coordinates >= lower)
+        assert np.all(coordinates <= upper)
         assert all(p.lower <= values[p.name] <= p.upper for p in effect.parameters)
 
 
@@ -241,7 +265,8 @@ def test_an_arm_at_rest_shows_nothing_and_says_why(effect: Effect, ur5) -> None:
     motion = at_rest(ur5)
     for joint in joints_of(effect, ur5.n_dof):
         reason = effect.excitation(motion, joint)
-        assert isinstance(reason, str) and len(reason) > 10
+        assert isinstance(reason, str)
+        assert len(reason) > 10
 
 
 @every_effect
@@ -262,7 +287,8 @@ def test_a_model_without_bodies_will_do_where_none_are_needed(effect: Effect, sp
             continue
         columns = effect.columns(motion, joint, shape)
         values = effect.values(coefficients_inside(effect, shape, 0.1, np.random.default_rng(3)), shape)
-        assert np.isfinite(columns).all() and np.isfinite(effect.torque(motion, joint, values)).all()
+        assert np.isfinite(columns).all()
+        assert np.isfinite(effect.torque(motion, joint, values)).all()
 
 
 def test_an_unknown_name_is_refused_with_the_nearest_one() -> None:

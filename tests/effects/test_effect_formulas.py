@@ -59,6 +59,11 @@ def asymmetric(sweep, joint, values):
     return np.where(forward, values["Fc_plus"], values["Fc_minus"]) * dry(sweep, joint)
 
 
+def drag(sweep, joint, values):
+    v = sweep.motion.v[:, joint]
+    return values["Fd"] * np.sign(v) * v**2
+
+
 def stribeck(sweep, joint, values):
     near = np.exp(-((sweep.motion.v[:, joint] / values["vs"]) ** 2))
     return (values["Fc"] + values["Fs"] * near) * dry(sweep, joint)
