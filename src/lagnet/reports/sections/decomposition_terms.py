@@ -1,0 +1,69 @@
+"""Each term of each joint over time, predicted on reference."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lagnet.decomposition.decompose import Decomposition
+from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
+from lagnet.reports.page import Section, section
+from lagnet.reports.timeline import Timeline, timeline
+
+SHOWN = ("total", "inertial", "coriolis", "gravity", "residual")
+PAGE_POINTS = 40_000  # of all lines of the page: keeps it under a few megabytes
+BAND = 2.0  # standard deviations of an ensemble's members
+
+
+def build(parts: Decomposition) -> Section:
+    """A panel for every joint, one of them shown at a time."""
+    budget = max(200, min(2000, PAGE_POINTS // (parts.n_dof * len(SHOWN) * 2)))
+    panels: list[dict[str, Any]] = []
+    figures: list[Figure] = []
+    for i, joint in enumerate(parts.joints):
+        line = timeline(parts, parts.terms.total[:, i], budget)
+        unit = "N" if parts.joint_types[i] == "prismatic" else "N m"
+        own = [_figure(parts, line, i, name, unit) for name in SHOWN if _present(parts, name, i)]
+        figures += own
+        panels.append({"index": i, "joint": joint, "plots": own})
+    absent = [name for name in SHOWN if not any(_present(parts, name, i) for i in range(parts.n_dof))]
+    return section("decomposition_terms", "Joint by joint over time", figures, panels=panels, absent=absent)
+
+
+def _present(parts: Decomposition, name: str, i: int) -> bool:
+    """Whether a term is there at all: in the model or in the reference."""
+    believed = dict(parts.reference.items())[name][:, i] if parts.reference is not None else np.zeros(1)
+    return bool(np.any(dict(parts.terms.items())[name][:, i]) or np.any(believed))
+
+
+def _figure(parts: Decomposition, line: Timeline, i: int, name: str, unit: str) -> Figure:
+    own = dict(parts.terms.items())[name][:, i]
+    traces: list[Trace] = []
+    if name == "total":
+        traces.append(_line(line, parts.measured[:, i], "measured", "measured", 4.0))
+    if parts.reference is not None:
+        traces.append(_line(line, dict(parts.reference.items())[name][:, i], "reference", "nominal", 3.0))
+    if parts.spread is not None:
+        sd = parts.spread.of[name][:, i]
+        traces += [_edge(line, own - BAND * sd, None), _edge(line, own + BAND * sd, "tonexty")]
+    traces.append(_line(line, own, "model", "corrected", 1.5))
+    for trace in traces[1:]:
+        trace["x"] = SAME_X
+    layout = {"xaxis": axis("time, motions laid end to end", "s"), "yaxis": axis(name, unit), "hovermode": "x"}
+    return Figure(f"joint-{i}-{name}", traces, f"{name} torque of {parts.joints[i]} over time", layout, 260)
+
+
+def _line(line: Timeline, values: np.ndarray, words: str, role: str, width: float) -> Trace:
+    return {
+        "type": "scatter", "mode": "lines", "x": packed(line.time), "y": packed(line.of(values)), "name": words,
+        "connectgaps": False, "line": {"color": colour(role), "width": width}, "hovertemplate": "%{y:.4g}",
+    }  # fmt: skip
+
+
+def _edge(line: Timeline, values: np.ndarray, fill: str | None) -> Trace:
+    return {
+        "type": "scatter", "mode": "lines", "x": packed(line.time), "y": packed(line.of(values)),
+        "name": "2 sd of members", "showlegend": fill is not None, "line": {"width": 0}, "hoverinfo": "skip", "opacity": 0.35,
+        "fillcolor": colour("noise"), **({"fill": fill} if fill else {}),
+    }  # fmt: skip
