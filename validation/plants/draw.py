@@ -93,8 +93,22 @@ def _draw_effect(effect: str, robot: str, rng: np.random.Generator) -> Hidden:
     joint = int(rng.choice(arm_joints(robot)))
     size = float(np.exp(rng.uniform(np.log(0.03), np.log(0.4))))
     values = FIRST_SET[effect](scale_of(robot), joint, size, rng)
+    size = _clipped_size(effect, scale_of(robot), joint, size, values)
     name = None if effect in WHOLE_ARM else joint_names(robot)[joint]
     return Hidden(effect, name, {k: float(v) for k, v in values.items()}, size)
+
+
+def _clipped_size(effect: str, s: Scale, j: int, size: float, values: dict[str, float]) -> float:
+    """The size that is left where a parameter was held inside what is physically sensible."""
+    match effect:
+        case "time_delay":
+            return float(values["T"] * s.torque_rate[j] / s.torque[j])
+        case "payload":
+            return values["m"] * s.payload_share
+        case "gravity_tilt":
+            return float(np.hypot(values["theta_1"], values["theta_2"]) * s.tilt_share)
+        case _:
+            return size
 
 
 def _same_thing(one: Hidden, other: Hidden) -> bool:

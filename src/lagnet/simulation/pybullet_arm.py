@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -23,10 +25,24 @@ def load_pybullet() -> Any:
         MissingExtraError: it is not installed.
     """
     try:
-        import pybullet  # pyright: ignore[reportMissingImports]
+        with _hushed():
+            import pybullet  # pyright: ignore[reportMissingImports]
     except ImportError:
         raise MissingExtraError("PyBullet is not installed", next_step="pip install 'lagnet[simulation]'") from None
     return pybullet
+
+
+@contextmanager
+def _hushed() -> Iterator[None]:
+    """The engine prints its build time on standard error when it is loaded, which belongs to our own messages."""
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
 
 
 class PyBulletArm:
