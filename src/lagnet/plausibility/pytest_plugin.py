@@ -130,11 +130,6 @@ class PlausibilityTests:
         """The model, with the calls of lagnet.types.InverseDynamics."""
         raise NotImplementedError("define model(self) in your subclass of PlausibilityTests")
 
-    @pytest.fixture(scope="class")
-    def lagnet_model(self, request: pytest.FixtureRequest) -> Any:
-        """What `model` returns, made once for the class."""
-        return request.cls().model()
-
     def test_plausible(self, lagnet_check: LagnetCheck) -> None:
         """Holds the model against one check."""
         lagnet_check.assert_holds()
@@ -159,9 +154,17 @@ def lagnet_check(request: pytest.FixtureRequest, lagnet_model: Any) -> LagnetChe
     return LagnetCheck(request.param, subject, request.node.user_properties)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="class")
 def lagnet_model(request: pytest.FixtureRequest) -> Any:
-    """The model of --lagnet-model; override this fixture to give your own."""
+    """What `model` of a PlausibilityTests class returns, else --lagnet-model; override it to give your own."""
+    if request.cls is not None and issubclass(request.cls, PlausibilityTests):
+        return request.cls().model()
+    return request.getfixturevalue("lagnet_model_of_command_line")
+
+
+@pytest.fixture(scope="session")
+def lagnet_model_of_command_line(request: pytest.FixtureRequest) -> Any:
+    """The model of --lagnet-model, loaded once."""
     spec = request.config.getoption("--lagnet-model")
     if not spec:
         pytest.fail("define a fixture lagnet_model that returns your model, or give --lagnet-model")

@@ -13,6 +13,7 @@ from lagnet.reports.timeline import Timeline, timeline
 
 SHOWN = ("total", "inertial", "coriolis", "gravity", "residual")
 PAGE_POINTS = 40_000  # of all lines of the page: keeps it under a few megabytes
+NEGLIGIBLE = 1e-9  # of the largest torque: rounding of a term that is not there
 BAND = 2.0  # standard deviations of an ensemble's members
 
 
@@ -32,24 +33,27 @@ def build(parts: Decomposition) -> Section:
 
 
 def _present(parts: Decomposition, name: str, i: int) -> bool:
-    """Whether a term is there at all: in the model or in the reference."""
-    believed = dict(parts.reference.items())[name][:, i] if parts.reference is not None else np.zeros(1)
-    return bool(np.any(dict(parts.terms.items())[name][:, i]) or np.any(believed))
+    """Whether a term is there at all, in the model or in the reference, beyond rounding."""
+    models = [parts.terms] if parts.reference is None else [parts.terms, parts.reference]
+    sizes = [np.abs(dict(m.items())[name][:, i]).max() / max(np.abs(m.total).max(), 1e-300) for m in models]
+    return max(sizes) > NEGLIGIBLE
 
 
 def _figure(parts: Decomposition, line: Timeline, i: int, name: str, unit: str) -> Figure:
     own = dict(parts.terms.items())[name][:, i]
     traces: list[Trace] = []
+    band: list[Trace] = []
     if name == "total":
         traces.append(_line(line, parts.measured[:, i], "measured", "measured", 4.0))
     if parts.reference is not None:
         traces.append(_line(line, dict(parts.reference.items())[name][:, i], "reference", "nominal", 3.0))
     if parts.spread is not None:
-        sd = parts.spread.of[name][:, i]
-        traces += [_edge(line, own - BAND * sd, None), _edge(line, own + BAND * sd, "tonexty")]
+        sd = BAND * parts.spread.of[name][:, i]
+        band = [_band(line, own - sd, own + sd, parts.spread.members)]
     traces.append(_line(line, own, "model", "corrected", 1.5))
     for trace in traces[1:]:
         trace["x"] = SAME_X
+    traces = band + traces
     layout = {"xaxis": axis("time, motions laid end to end", "s"), "yaxis": axis(name, unit), "hovermode": "x"}
     return Figure(f"joint-{i}-{name}", traces, f"{name} torque of {parts.joints[i]} over time", layout, 260)
 
@@ -61,9 +65,16 @@ def _line(line: Timeline, values: np.ndarray, words: str, role: str, width: floa
     }  # fmt: skip
 
 
-def _edge(line: Timeline, values: np.ndarray, fill: str | None) -> Trace:
+def _band(line: Timeline, low: np.ndarray, high: np.ndarray, members: int) -> Trace:
+    """One closed outline for every motion: there along the upper edge, back along the lower one."""
+    time, below, above = line.time, line.of(low), line.of(high)
+    x, y = [], []
+    for own in np.split(np.arange(len(time)), np.flatnonzero(line.rows < 0)):
+        rows = own[line.rows[own] >= 0]
+        x += [time[rows], time[rows][::-1], [np.nan]]
+        y += [above[rows], below[rows][::-1], [np.nan]]
     return {
-        "type": "scatter", "mode": "lines", "x": packed(line.time), "y": packed(line.of(values)),
-        "name": "2 sd of members", "showlegend": fill is not None, "line": {"width": 0}, "hoverinfo": "skip", "opacity": 0.35,
-        "fillcolor": colour("noise"), **({"fill": fill} if fill else {}),
+        "type": "scatter", "mode": "lines", "x": packed(np.concatenate(x)), "y": packed(np.concatenate(y)),
+        "fill": "toself", "line": {"width": 0}, "hoverinfo": "skip", "opacity": 0.4, "fillcolor": colour("noise"),
+        "name": f"{BAND:.0f} sd of {members} members",
     }  # fmt: skip
