@@ -105,7 +105,7 @@ def make_delan(key: Array, features: JointFeatures, scales: Scales, settings: De
         motion=make_chain_network(keys[0], features.owner, n, rank),
         axes=jax.random.normal(keys[1], (n, rank)),
         bodies=tuple(bodies),
-        drives=jnp.full(n, -5.0),
+        drives=jnp.zeros(n) - 5.0,
         height=make_chain_network(keys[3], features.owner, n, potential_rank),
         start=jax.random.normal(keys[4], (potential_rank,)),
         weights=jax.random.normal(keys[5], (n, potential_rank)) / np.sqrt(potential_rank),

@@ -24,7 +24,7 @@ from lagnet.models.features import JointFeatures
 from lagnet.models.feed_forward import FeedForward
 from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_perceptron_delan
 from lagnet.models.scales import Scales
-from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network
+from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network, silenced
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,8 @@ class ModelSpec:
 def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
     below, above = jax.random.split(key)
     mechanics = _entry(settings.mechanics)[1](below, features, scales, settings.mechanics_settings)
-    return Augmented(mechanics, make_torque_network(above, features, scales, settings.residual), settings.parity)
+    epsilon = silenced(make_torque_network(above, features, scales, settings.residual))
+    return Augmented(mechanics, epsilon, settings.parity)
 
 
 KINDS: dict[str, tuple[type, Callable[..., AbstractDynamics]]] = {

@@ -45,7 +45,7 @@ def save_model(model: LearnedModel, folder: str | Path) -> Path:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     stream = io.BytesIO()
-    np.savez(stream, **_leaves(model.dynamics))
+    np.savez(stream, allow_pickle=False, **_leaves(model.dynamics))
     weights = stream.getvalue()
     _write_whole(folder / WEIGHTS, weights)
     text = json.dumps(_description(model, weights), indent=2, allow_nan=False)

@@ -27,8 +27,8 @@ class Scales:
 
 def fit_scales(v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> Scales:
     """Measure the sizes on training data of shape (n, dof); joints that never move or push count as size 1."""
-    rms = (np.sqrt(np.mean(x**2, axis=0)) for x in (v, a))
-    return Scales(*map(_sizes, rms), _sizes(tau.std(axis=0)))
+    speed, acceleration = (np.sqrt(np.mean(x**2, axis=0)) for x in (v, a))
+    return Scales(_sizes(speed), _sizes(acceleration), _sizes(tau.std(axis=0)))
 
 
 def _sizes(values: np.ndarray) -> tuple[float, ...]:

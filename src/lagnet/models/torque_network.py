@@ -47,9 +47,13 @@ class TorqueNetwork(eqx.Module):
 def make_torque_network(
     key: Array, features: JointFeatures, scales: Scales, settings: TorqueNetworkSettings
 ) -> TorqueNetwork:
-    """Draw an untrained network whose output starts at zero, so that as an ε it starts by taking nothing."""
+    """Draw an untrained network."""
     n = len(features.joint_types)
     inputs = (0,) * (len(features.owner) + 3 * n)
     network = make_network(key, inputs, (0,) * n, settings.hidden, settings.activation)
-    silent = (*network.weights[:-1], jnp.zeros_like(network.weights[-1]))
-    return TorqueNetwork(eqx.tree_at(lambda x: x.weights, network, silent), features, scales, settings)
+    return TorqueNetwork(network, features, scales, settings)
+
+
+def silenced(torque: TorqueNetwork) -> TorqueNetwork:
+    """The same network with its last layer at zero, so that as an ε it starts by taking nothing."""
+    return eqx.tree_at(lambda x: x.network.weights[-1], torque, replace_fn=jnp.zeros_like)

@@ -14,6 +14,8 @@ import numpy as np
 import optax
 from jaxtyping import Array
 
+LONGEST = 2.0  # a step of one weight in the eigenbasis, in learning rates; Adam's are of order 1
+
 
 class Basis(NamedTuple):
     """Gradient covariances of a stack of matrices from the left and the right, and their eigenvectors."""
@@ -50,14 +52,14 @@ def scale_by_soap(
         every: steps between turns of the eigenbasis (one QR step of orthogonal iteration).
     """
 
-    def init(params: Any) -> SoapState:
+    def init(params: Any) -> Any:
         stacks = _stack(jax.tree.leaves(params))
         groups = tuple(Group(jnp.zeros_like(x), jnp.zeros_like(x), _start_basis(x)) for x in stacks)
         return SoapState(jnp.zeros((), jnp.int32), groups)
 
-    def update(grads: Any, state: SoapState, params: Any = None) -> tuple[Any, SoapState]:
+    def update(updates: Any, state: Any, params: Any = None) -> tuple[Any, Any]:
         count = state.count + 1
-        leaves, tree = jax.tree.flatten(grads)
+        leaves, tree = jax.tree.flatten(updates)
         turn = (count % every == 1) | (every == 1)
         out = [
             _step(grad, group, count, turn, (b1, b2, eps))
@@ -104,10 +106,24 @@ def _step(grad: Array, group: Group, count: Array, turn: Array, memory: tuple[fl
     b1, b2, eps = memory
     first = b1 * group.first + (1 - b1) * grad
     basis = None if group.basis is None else _follow(group.basis, grad, turn, b2)
-    second = b2 * group.second + (1 - b2) * _rotate(grad, basis) ** 2
+    second = b2 * _carried(group, basis, turn) + (1 - b2) * _rotate(grad, basis) ** 2
     root = jnp.sqrt(second / (1 - b2**count)) + eps
-    step = _rotate(first / (1 - b1**count), basis) / root
+    step = jnp.clip(_rotate(first / (1 - b1**count), basis) / root, -LONGEST, LONGEST)
     return _rotate_back(step, basis), Group(first, second, basis)
+
+
+def _carried(group: Group, basis: Basis | None, turn: Array) -> Array:
+    """The second moment seen from the turned basis; left as it was, a direction could turn onto a root near zero."""
+    if basis is None or group.basis is None:
+        return group.second
+    old = group.basis
+
+    def mixed(_: None) -> Array:
+        left = (basis.left_vectors.mT @ old.left_vectors) ** 2
+        right = (old.right_vectors.mT @ basis.right_vectors) ** 2
+        return left @ group.second @ right
+
+    return jax.lax.cond(turn, mixed, lambda _: group.second, None)
 
 
 def _rotate(x: Array, basis: Basis | None) -> Array:

@@ -1,0 +1,42 @@
+"""What a training said on its way: errors by joint over steps and time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Report:
+    """State of a training after some steps.
+
+    Args:
+        step: gradient steps done; total: all that are planned.
+        seconds: wall-clock since the start, compilation included; left: estimate of what remains.
+        loss: mean over the last steps of what is being lowered.
+        train, held_out: torque error of each joint as a share of its variance, on training and held-out samples.
+    """
+
+    step: int
+    total: int
+    seconds: float
+    left: float
+    loss: float
+    train: tuple[float, ...]
+    held_out: tuple[float, ...]
+
+    def line(self) -> str:
+        """One plain line for a log."""
+        joints = " ".join(f"{x:.1e}" for x in self.held_out)
+        return (
+            f"step {self.step}/{self.total}  loss {self.loss:.2e}  held out by joint {joints}  {self.left:.0f} s left"
+        )
+
+
+@dataclass
+class History:
+    """All reports of a training, in order, and which step was kept."""
+
+    reports: list[Report] = field(default_factory=list)
+    kept_step: int = 0
+    stopped_early: bool = False
+    interrupted: bool = False

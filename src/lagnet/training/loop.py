@@ -1,0 +1,106 @@
+"""The training loop: chunks of steps compiled as one scan, with data, shuffling and optimiser on the device."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import optax
+from jaxtyping import Array
+
+from lagnet.models.dynamics import AbstractDynamics
+from lagnet.training.loss import Errors, errors, penalised
+from lagnet.training.settings import TrainingSettings
+from lagnet.training.soap import scale_by_soap
+
+CHUNK = 100  # steps compiled together; between chunks come reports, checkpoints and stopping
+LAST_SHARE = 1e-4  # learning rate at the end of the cosine, as a share of its peak
+JUDGED = 2048  # samples of either side on which errors are reported
+
+
+class LoopState(NamedTuple):
+    """All that the loop carries, and all that a checkpoint must hold."""
+
+    params: Any
+    optimiser: Any
+    key: Array
+    step: Array
+
+
+class Loop(NamedTuple):
+    """Compiled functions of one training.
+
+    Args:
+        start: state at step 0.
+        advance: (state, data, λ, total steps) → (state after CHUNK steps, mean loss).
+        judge: (params, data) → Errors.
+        assemble: params → model.
+    """
+
+    start: LoopState
+    advance: Callable[..., tuple[LoopState, Array]]
+    judge: Callable[..., Errors]
+    assemble: Callable[[Any], AbstractDynamics]
+
+
+def make_loop(
+    dynamics: AbstractDynamics, variance: Array, n_samples: int, settings: TrainingSettings, seed: int, trainable: Any
+) -> Loop:
+    """Prepare a training.
+
+    Args:
+        dynamics: the model to start from.
+        variance: torque variance of each joint, shape (dof,).
+        n_samples: rows of the training data.
+        settings: how to train.
+        seed: of the shuffling.
+        trainable: filter that is true for the leaves to be trained; the others keep their values.
+    """
+    params, fixed = eqx.partition(dynamics, trainable)
+    direction = _direction(settings.optimiser)
+    batch = min(settings.batch, n_samples)
+
+    def loss(params: Any, rows: tuple[Array, ...], penalty: Array) -> Array:
+        return penalised(errors(eqx.combine(params, fixed), rows, variance), penalty)
+
+    def advance(state: LoopState, data: tuple[Array, ...], penalty: Array, total: Array) -> tuple[LoopState, Array]:
+        key, subkey = jax.random.split(state.key)
+
+        def step(carry: tuple[Any, Any, Array], rows: Array) -> tuple[tuple[Any, Any, Array], Array]:
+            params, memory, count = carry
+            value, grads = jax.value_and_grad(loss)(params, tuple(x[rows] for x in data), penalty)
+            updates, memory = direction.update(grads, memory, params)
+            rate = _rate(count, total, settings)
+            params = jax.tree.map(lambda p, u: p - rate * u, params, updates)
+            return (params, memory, count + 1), value
+
+        carry = (state.params, state.optimiser, state.step)
+        (params, memory, count), values = jax.lax.scan(step, carry, _shuffled(subkey, n_samples, batch))
+        return LoopState(params, memory, key, count), jnp.mean(values)
+
+    start = LoopState(params, direction.init(params), jax.random.key(seed), jnp.zeros((), jnp.int32))
+    judge = jax.jit(lambda params, data: errors(eqx.combine(params, fixed), data, variance))
+    return Loop(start, jax.jit(advance), judge, lambda params: eqx.combine(params, fixed))
+
+
+def _shuffled(key: Array, n_samples: int, batch: int) -> Array:
+    """Rows of each minibatch of a chunk, shape (CHUNK, batch): each sample once before any comes twice."""
+    rounds = -(-CHUNK * batch // n_samples)
+    orders = jax.vmap(lambda k: jax.random.permutation(k, n_samples))(jax.random.split(key, rounds))
+    return orders.reshape(-1)[: CHUNK * batch].reshape(CHUNK, batch)
+
+
+def _rate(count: Array, total: Array, settings: TrainingSettings) -> Array:
+    """Learning rate: a linear rise, then half a cosine."""
+    rise = jnp.minimum(1.0, (count + 1) / settings.warm_up)
+    fall = 0.5 * (1.0 + jnp.cos(jnp.pi * jnp.minimum(1.0, count / total)))
+    return settings.peak * rise * (LAST_SHARE + (1.0 - LAST_SHARE) * fall)
+
+
+def _direction(name: str) -> optax.GradientTransformation:
+    if name == "muon":
+        return optax.contrib.muon(learning_rate=-1.0)
+    return scale_by_soap() if name == "soap" else optax.scale_by_adam()
