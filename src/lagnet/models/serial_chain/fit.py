@@ -183,6 +183,9 @@ def _refit_with_noise(
     found = refit.free(make_samples(*data.train, noise=noise), x, w)
     for _ in range(rounds):
         noise = np.maximum(_residual(refit.unknowns, data.train, found).std(axis=0), PRECISION * size)
+        if np.all(noise == PRECISION * size):
+            noise = size
+            break
         found = refit.free(make_samples(*data.train, noise=noise), found.x, found.w)
     return found, noise
 
@@ -195,7 +198,7 @@ def _finish(unknowns: Unknowns, data: _Data, best: _Candidate, refit: Refit) -> 
     fine = bool(np.all(physical_score <= 1.05 * free_score + 1e-13))
     chosen = physical if fine else best.free
     links = 10 * unknowns.n_dof
-    known = determinacy(unknowns, chosen.x, chosen.w, data.train[:3], best.noise)
+    known = determinacy(chosen.sums.gram, unknowns.n_dof, len(unknowns.joint_terms))
     x, moments = normalise_gravity(unknowns, chosen.x, chosen.w[:links].reshape(-1, 10))
     return SerialChainFit(
         unknowns=unknowns,

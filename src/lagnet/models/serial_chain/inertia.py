@@ -1,8 +1,8 @@
 """Ten inertial parameters a link as the entries of one symmetric 4 × 4 matrix, in which the dynamics are simplest.
 
-The pseudo-inertia J = [[Σ, h], [hᵀ, m]] holds the second moments Σ = ∫ r rᵀ dm, the first moments h = ∫ r dm and the mass: the
-"moments" of a link. Elsewhere in the package a link is given by mass, first moments and rotational inertia; the maps between
-the two are linear. Source: Wensing et al. 2018.
+The pseudo-inertia J = [[Σ, h], [hᵀ, m]] holds the second moments Σ = ∫ r rᵀ dm, the first moments h = ∫ r dm and the
+mass: the "moments" of a link. Elsewhere in the package a link is given by mass, first moments and rotational inertia;
+the maps between the two are linear. Source: Wensing et al. 2018.
 """
 
 from __future__ import annotations

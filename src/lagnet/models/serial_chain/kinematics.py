@@ -1,13 +1,13 @@
 """Where the link frames of a serial arm are and how they accelerate, in the frame of the base.
 
-Frame 0 turns about (or slides along) the base's z axis. Frame i + 1 sits at `offsets[i]` in the x–y plane of frame i and is
-turned by Rz(angles[i, 0]) Rx(angles[i, 1]). Two angles and two lengths a joint suffice: an origin may lie anywhere along
-its own axis, so it is put where the next origin has no z component; a turn about the next joint's axis only shifts that
-joint's zero, which changes inertial parameters, not motion; the first turn about z is a choice of base frame.
+Frame 0 turns about or slides along the base's z axis. Frame i + 1 sits at `offsets[i]` in the x–y plane of frame i and
+is turned by Rz(angles[i, 0]) Rx(angles[i, 1]). Two angles and two lengths a joint suffice: an origin may lie anywhere
+along its own axis, so it is put where the next origin has no z component; a turn about the next joint's axis only
+shifts that joint's zero, which changes inertial parameters, not motion; the first turn about z is a choice of base.
 
 Every link carries four vectors: the columns x, y, z of its rotation and its origin. A point of the link is a constant
-combination of them, so their Jacobians and second derivatives are all that dynamics needs. Source: Uicker 1965; Hollerbach
-1980 (4 × 4 matrices); Denavit & Hartenberg 1955 (counting of constants).
+combination of them, so their Jacobians and second derivatives are all that dynamics needs. Source: Uicker 1965;
+Hollerbach 1980 (4 × 4 matrices); Denavit & Hartenberg 1955 (counting of constants).
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """A relaxation of the serial arm in which only the directions of the joint axes are nonlinear.
 
-A mass point of any link lies at r = Σ_μ c_μ y_μ(q), where the y_μ are the x and y columns of each revolute link's rotation
-(its z column is fixed in the link before) and q z of each prismatic joint; lengths hide in the constants c. The kinetic
-energy is then ½ Σ Ω_μν ẏ_μ·ẏ_ν with Ω = ∫ c cᵀ dm, gravity does the same with three constant base vectors, and by
-Lagrange's equations each pair adds Ω_μν (∂y_μ/∂q · ÿ_ν + ∂y_ν/∂q · ÿ_μ) to the torque: linear in Ω. Every arm with these axis
-directions is some Ω, so link lengths, gravity and inertias all drop out of the search, 25 unknowns of a seven-joint arm
-become 11, and most random starts that fail in the full problem succeed here. Ω is not kept: it only finds the directions.
-The linearity is that of barycentric parameters (Maes, Samin & Willems 1989); using it to find unknown axes is ours.
+A mass point of any link lies at r = Σ_μ c_μ y_μ(q), where the y_μ are the x and y columns of each revolute link's
+rotation (its z column is fixed in the link before) and q z of each prismatic joint; lengths hide in the constants c.
+The kinetic energy is then ½ Σ Ω_μν ẏ_μ·ẏ_ν with Ω = ∫ c cᵀ dm, gravity does the same with three constant base
+vectors, and by Lagrange's equations each pair adds Ω_μν (∂y_μ/∂q · ÿ_ν + ∂y_ν/∂q · ÿ_μ) to the torque: linear in Ω.
+Every arm with these axis directions is some Ω, so link lengths, gravity and inertias all drop out of the search: 26
+nonlinear unknowns of a seven-joint arm become 11, and about every third random start finds them. Ω is not kept.
+The linearity is that of barycentric parameters (Maes, Samin & Willems 1989).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def lifted_regressor(angles: Array, revolute: tuple[bool, ...], q: Array, v: Arr
 
 
 def gravity_direction(lifted: np.ndarray, revolute: tuple[bool, ...]) -> np.ndarray:
-    """Unit vector along gravity in the base frame, from Ω's weight part, which is gravity times first moments (rank one)."""
+    """Unit vector along gravity in the base frame, up to sign: Ω's weight part is gravity times first moments."""
     weight = lifted[-3 * _count(revolute) :].reshape(-1, 3)
     return np.linalg.svd(weight)[2][0]
 

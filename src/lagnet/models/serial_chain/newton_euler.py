@@ -1,8 +1,8 @@
 """Torques, mass matrix and energies of a serial arm of known constants; one sample, pure JAX.
 
-Newton–Euler in the base frame: each link's inertia times the accelerations of its vectors gives the force and the moment it
-needs; these add up from the tip to the base, and each joint bears the component along its axis. The mass matrix adds up
-pseudo-inertias instead (composite bodies). Source: Luh, Walker & Paul 1980; Featherstone 2008, ch. 6.
+Newton–Euler in the base frame: each link's inertia times the accelerations of its vectors gives the force and the
+moment it needs; these add up from the tip to the base, and each joint bears the component along its axis. The mass
+matrix adds up pseudo-inertias instead (composite bodies). Source: Luh, Walker & Paul 1980; Featherstone 2008, ch. 6.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From random starts to the shape of an arm: axis directions by the relaxed problem, then lengths and gravity by the full one."""
+"""From random starts to the shape of an arm: axis directions by the relaxed problem, then lengths and gravity."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class SearchSettings:
         most_starts: starts after which the best so far is taken.
         iterations: steps a start.
         convincing: share of the torque's energy; a minimum below it that two starts reached is believed at once.
-        exact: share below which one start is enough: no wrong shape explains torque to this precision.
+        exact: share below which one start is enough and stops: no wrong shape explains torque to this precision.
         lengths: root mean square of the random offsets that the full problem starts from [m].
     """
 
@@ -33,7 +33,7 @@ class SearchSettings:
     most_starts: int = 120
     iterations: int = 40
     convincing: float = 1e-3
-    exact: float = 1e-10
+    exact: float = 1e-11
     lengths: float = 0.3
 
 
@@ -78,8 +78,8 @@ def search_lengths(
 ) -> Found:
     """Offsets and gravity by the full problem, with the axes near those found; everything is free to move.
 
-    Half of the starts take gravity from the relaxed problem, half at random. A mirror image (r → −r of every vector) makes
-    the sign of gravity a choice unless a prismatic joint fixes it, so both are tried.
+    Half of the starts take gravity from the relaxed problem, half at random. A mirror image (r → −r of every vector)
+    makes the sign of gravity a choice unless a prismatic joint fixes it, so both are tried.
     """
 
     def draw() -> np.ndarray:
@@ -97,7 +97,7 @@ def search_lengths(
 def _search(descent: Descent, draw: Callable[[], np.ndarray], settings: SearchSettings) -> Found:
     x, cost, linear = [], [], []
     while True:
-        point = descent.run(draw(), settings.iterations)
+        point = descent.run(draw(), settings.iterations, settings.exact)
         x.append(np.asarray(point.x))
         cost.append(np.nan_to_num(np.asarray(point.normal.cost), nan=np.inf) / descent.energy)
         linear.append(np.asarray(point.normal.w))

@@ -1,9 +1,9 @@
 """Least squares in which most unknowns are linear: eliminate those, and step in the few that are not.
 
-Torque is P(x) w. For each x the best w solves linear normal equations; Levenberg–Marquardt then moves x with the part of
-the derivative of P(x) w that no change of w could make up (variable projection, Kaufman's form). Sums run over chunks of
-samples, so that ten thousand samples need no more memory than five hundred, and many starts run at once (vmap).
-Source: Golub & Pereyra 1973; Kaufman 1975; Marquardt 1963.
+Torque is P(x) w. For each x the best w solves linear normal equations; Levenberg–Marquardt then moves x with the part
+of the derivative of P(x) w that no change of w could make up (variable projection, Kaufman's form). Sums run over
+chunks of samples, so that ten thousand samples need no more memory than five hundred, and many starts run at once
+(vmap). Source: Golub & Pereyra 1973; Kaufman 1975; Marquardt 1963.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ def make_samples(
     weight = np.zeros((chunks * size, dof))
     weight[:n] = 1.0 / noise
     pad = [(0, chunks * size - n), (0, 0)]
-    shaped = [np.pad(x, pad).reshape(chunks, size, dof) for x in (q, v, a, tau)]
-    return Samples(*map(jnp.asarray, shaped), jnp.asarray(weight.reshape(chunks, size, dof)))
+    parts = [np.pad(x, pad) for x in (q, v, a, tau)] + [weight]
+    return Samples(*(jnp.asarray(part.reshape(chunks, size, dof)) for part in parts))
 
 
 def solve_linear(matrix: Array, right: Array) -> Array:
@@ -120,7 +120,7 @@ def _sum_linear(design: Design, samples: Samples, x: Array) -> tuple[Array, Arra
         columns = _weighted(design, x, part)
         return (total[0] + columns.T @ columns, total[1] + columns.T @ (part.tau * part.weight).reshape(-1)), None
 
-    m = jax.eval_shape(design, x, *(part[0, 0] for part in samples[:3])).shape[1]
+    m = jax.eval_shape(design, x, samples.q[0, 0], samples.v[0, 0], samples.a[0, 0]).shape[1]
     return jax.lax.scan(add, (jnp.zeros((m, m)), jnp.zeros(m)), samples)[0]
 
 
@@ -168,9 +168,11 @@ class Descent:
         self._step = jax.jit(jax.vmap(lambda p, s: _step(design, s, jnp.asarray(scale), p), (0, None)))
         self._samples = samples
         self.energy = float(jnp.sum((samples.tau * samples.weight) ** 2))
-        self._linear = jax.eval_shape(design, jnp.asarray(scale), *(x[0, 0] for x in samples[:3])).shape[1]
+        self._linear = jax.eval_shape(
+            design, jnp.asarray(scale), samples.q[0, 0], samples.v[0, 0], samples.a[0, 0]
+        ).shape[1]
 
-    def run(self, starts: np.ndarray, iterations: int, target: float = 1e-16) -> Point:
+    def run(self, starts: np.ndarray, iterations: int, target: float) -> Point:
         """Descend from every row of `starts` until none moves, or one explains all but `target` of the torque."""
         point = jax.vmap(lambda x: _unvisited(x, self._linear))(jnp.asarray(starts))
         costs = []

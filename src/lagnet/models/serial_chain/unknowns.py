@@ -92,8 +92,8 @@ def _torque(unknowns: Unknowns, x: Array, w: Array, q: Array, v: Array, a: Array
 def normalise_gravity(unknowns: Unknowns, x: np.ndarray, moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Give gravity its standard size by choosing the unit of length, which turning joints alone leave open.
 
-    Lengths times s, first moments divided by s and masses by s² leave every torque as it is when gravity is multiplied by
-    s; with a prismatic joint the metre is known and gravity is measured instead.
+    Lengths times s, first moments divided by s and masses by s² leave every torque as it is when gravity is multiplied
+    by s; with a prismatic joint the metre is known and gravity is measured instead.
     """
     size = float(np.linalg.norm(x[-3:]))
     if not all(unknowns.revolute) or size == 0.0:
