@@ -111,7 +111,7 @@ def decompose(
         measured=motion.tau,
         terms=terms,
         reference=believed,
-        energies=energies_of(models[0], *clock, motion.q, motion.v, terms, motion.tau),
+        energies=energies_of(models, *clock, motion.q, motion.v, terms, motion.tau),
         total_error=agreement(terms.total, motion.tau, variance_floor(motion.tau), blocks, seed),
         term_errors=_errors(terms, believed, blocks, seed),
         spread=spread,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,21 +36,27 @@ class Energies:
 
 
 def energies_of(
-    model: Any, time: Samples, trajectory: np.ndarray, q: Trajectory, v: Trajectory, terms: Terms, measured: Trajectory
+    models: Sequence[Any],
+    time: Samples,
+    trajectory: np.ndarray,
+    q: Trajectory,
+    v: Trajectory,
+    terms: Terms,
+    measured: Trajectory,
 ) -> Energies:
     """Energies along a motion.
 
     Potential energy is the model's own where it has one, else the work against its gravity torque.
 
     Args:
-        model: see lagnet.types.InverseDynamics.
+        models: one, or the members of an ensemble; see lagnet.types.InverseDynamics.
         time, trajectory: shape (n,), clock and label of the motion.
         q, v: shape (n, dof), motion.
         terms: the model's torque along it.
         measured: shape (n, dof), measured torque [N m].
     """
-    kinetic = _kinetic(model, q, v)
-    potential = _potential(model, time, trajectory, q, v, terms.gravity)
+    kinetic = np.mean([_kinetic(model, q, v) for model in models], axis=0)
+    potential = _potential(models, time, trajectory, q, v, terms.gravity)
     mechanical = np.sum((terms.inertial + terms.coriolis + terms.gravity) * v, axis=1)
     energy = kinetic + potential
     gained = energy - energy[_begin(trajectory)]
@@ -78,10 +85,10 @@ def _kinetic(model: Any, q: Trajectory, v: Trajectory) -> Samples:
 
 
 def _potential(
-    model: Any, time: Samples, trajectory: np.ndarray, q: Trajectory, v: Trajectory, gravity: Trajectory
+    models: Sequence[Any], time: Samples, trajectory: np.ndarray, q: Trajectory, v: Trajectory, gravity: Trajectory
 ) -> Samples:
-    if offers(model, "potential_energy"):
-        energy = np.asarray(model.potential_energy(q), dtype=float)
+    if len(models) == 1 and offers(models[0], "potential_energy"):
+        energy = np.asarray(models[0].potential_energy(q), dtype=float)
         return energy - energy[_begin(trajectory)]
     return _integral(time, trajectory, np.sum(gravity * v, axis=1))
 

@@ -18,13 +18,15 @@ def motion_of(recording: Recording) -> tuple[Trajectory, Trajectory, Trajectory,
     if recording.v is not None and recording.a is not None:
         return recording.q, recording.v, recording.a, "recorded"
     from lagnet.recordings.conditioning import condition, motion_at_samples
+    from lagnet.recordings.smoothing import SHORTEST
+    from lagnet.recordings.stretches import stretches_of
 
-    conditioned = condition([recording])
-    if not conditioned.stretches:
+    if all(rows.stop - rows.start < SHORTEST for rows in stretches_of(recording)):
         raise RecordingError(
             f"{len(recording)} samples are too few to differentiate",
             where=recording.path or None,
             next_step="record longer, or give columns v_i and a_i",
         )
+    conditioned = condition([recording])
     q, v, a = motion_at_samples(recording, conditioned, 0)
     return np.asarray(q), np.asarray(v), np.asarray(a), "differentiated"
