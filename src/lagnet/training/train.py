@@ -12,6 +12,7 @@ from typing import Any
 
 import equinox as eqx
 import jax
+import numpy as np
 
 from lagnet.models.augmented import Augmented
 from lagnet.models.dynamics import AbstractDynamics
@@ -21,10 +22,11 @@ from lagnet.models.learned_model import LearnedModel
 from lagnet.models.scales import fit_scales
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
+from lagnet.training import serial_chain
 from lagnet.training.checkpoint import fingerprint
 from lagnet.training.fit import Fitted, Task, fit
 from lagnet.training.history import History, Report
-from lagnet.training.samples import samples_of
+from lagnet.training.samples import TrainingSamples, samples_of
 from lagnet.training.settings import PENALTIES, TrainingSettings
 
 TRIAL = 0.2  # share of the steps spent on each λ while one is being chosen
@@ -83,6 +85,8 @@ def train(
     seen, unseen = (recordings, holdout) if holdout else holdout_split(recordings)
     samples, held_out = samples_of(seen), samples_of(unseen)
     types = joint_types or guess_joint_types(samples.q)
+    if model == serial_chain.KIND:
+        return _chain_result(serial_chain.fit_chain(samples, types, seed, settings), held_out, began)
     features = fit_features(samples.q, types)
     spec = ModelSpec(model, settings, samples.joints, features, fit_scales(samples.v, samples.a, samples.tau))
     about = fingerprint(spec=spec, training=training, seed=seed, data=[samples.sha256(), held_out.sha256()])
@@ -92,6 +96,15 @@ def train(
     fitted, penalty = _fitted(start, task)
     stats = _stats(spec, task, fitted, penalty, time.monotonic() - began)
     return TrainResult(LearnedModel(spec, fitted.dynamics, stats), fitted.history, stats)
+
+
+def _chain_result(model: LearnedModel, held_out: TrainingSamples, began: float) -> TrainResult:
+    """A serial chain judged like the others; it has no gradient steps to report."""
+    error = model.inverse_dynamics(held_out.q, held_out.v, held_out.a) - held_out.tau
+    share = (error**2).mean(axis=0) / np.maximum(held_out.tau.var(axis=0), 1e-18)
+    seconds = round(time.monotonic() - began, 2)
+    model.training.update(held_out_error=share.tolist(), held_out_samples=len(held_out), seconds=seconds)
+    return TrainResult(model, History(), model.training)
 
 
 def _fitted(start: AbstractDynamics, task: Task) -> tuple[Fitted, float | None]:

@@ -1,0 +1,62 @@
+"""`lagnet train`: learn a dynamics model from recordings, to a folder that is a ROBOT for every other command."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+INTERRUPTED = 3
+
+
+def command(
+    recordings: Annotated[list[Path], typer.Argument(help="Recordings (.csv, .csv.gz, .parquet, .npz, .mat).")],
+    model: Annotated[
+        str, typer.Option(help="delan, delan-perceptron, delan-blackbox, ffnn, delan-ffnn or serial-chain.")
+    ] = "delan",
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("model"),
+    holdout: Annotated[
+        list[Path] | None, typer.Option(help="Recording to judge by; repeatable. Default: last fifth of each.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of initial weights and shuffling.")] = 0,
+    minutes: Annotated[float | None, typer.Option(help="Wall-clock limit of the training.")] = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
+    ] = None,
+    joint_types: Annotated[
+        str | None, typer.Option(help="Comma-separated: continuous, revolute or prismatic for each joint.")
+    ] = None,
+    penalty: Annotated[
+        float | None, typer.Option(help="λ of eq. 12 for delan-ffnn; chosen on held-out samples where not given.")
+    ] = None,
+) -> None:
+    """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
+    from lagnet.cli.console import say
+    from lagnet.recordings.load import load_recording
+    from lagnet.training.settings import TrainingSettings
+    from lagnet.training.train import train
+
+    read = [load_recording(path, columns=columns) for path in recordings]
+    judged = [load_recording(path, columns=columns) for path in holdout or []]
+    types = tuple(name.strip() for name in joint_types.split(",")) if joint_types else None
+    checkpoint = out / "training_checkpoint.npz"
+    fit = train(
+        read,
+        model,
+        seed=seed,
+        holdout=judged or None,
+        minutes=minutes,
+        training=TrainingSettings(penalty=penalty),
+        joint_types=types,
+        checkpoint=checkpoint,
+        progress=lambda report: say(report.line()) if report.step % 500 == 0 else None,
+    )
+    fit.model.save(out)
+    for joint, error in zip(fit.model.joints, fit.stats.get("held_out_error") or (), strict=False):
+        say(f"{joint}: held-out torque error {100 * error:.3g} % of its variance")
+    say(f"model: {out}")
+    if fit.stats.get("interrupted"):
+        say("interrupted: the best model so far was kept; the same command goes on from there")
+        raise typer.Exit(INTERRUPTED)
+    checkpoint.unlink(missing_ok=True)
