@@ -176,7 +176,8 @@ def _promising(bench: Workbench, best: Found) -> list[int]:
     for i in bench.library.reaching:
         if bench.library.hypotheses[i].place not in taken:
             fit = fit_selection(bench, (*best.selection, i), sigma)
-            gains[i] = float(np.sum(bench.samples / best.scales.memory * np.log(best.fit.sse / fit.sse)))
+            before, after = (np.maximum(f.sse, 1e-300) for f in (best.fit, fit))  # a joint that rests has no error
+            gains[i] = float(np.sum(bench.samples / best.scales.memory * np.log(before / after)))
     return sorted((i for i in gains if gains[i] > 0), key=lambda i: -gains[i])[:TRIED]
 
 

@@ -7,7 +7,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, sosfiltfilt
 
 ORDER = 4  # of the Butterworth filter, doubled by running forth and back
-SETTLING = 1.0  # time for which the filter remembers an edge, in periods of its bandwidth
+SETTLING = 2.0  # time for which the filter remembers an edge, in periods of its bandwidth
 SHORTEST = 32  # samples below which a stretch is left out: too short for the filter's edges
 
 
