@@ -1,5 +1,8 @@
 # The README's two commands are `make demo` and `make test`. Each sets up .venv on a fresh machine by itself.
-PYTHON ?= $(firstword $(foreach name,python3.13 python3.12 python3.11 python3,$(shell command -v $(name) 2>/dev/null)))
+# The first Python that is new enough; a name may stand in PATH and yet not run.
+NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
+PYTHON ?= $(shell for name in python3 python3.11 python3.12 python3.13 python; do \
+	$$name -c "$(NEW_ENOUGH)" 2>/dev/null && { echo $$name; break; }; done)
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -19,9 +22,8 @@ help:
 
 # requirements.lock pins what was tried together; the package itself is installed in place, for both targets alike.
 $(STAMP): pyproject.toml requirements.lock
-	@test -n "$(PYTHON)" || { echo "no python3 found: install Python 3.11 or newer" >&2; exit 1; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-		{ echo "$(PYTHON) is older than Python 3.11: install a newer one and set PYTHON=/path/to/it" >&2; exit 1; }
+	@$(or $(PYTHON),false) -c "$(NEW_ENOUGH)" || \
+		{ echo "no Python 3.11 or newer found: install one, or set PYTHON=/path/to/it" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install -r requirements.lock
 	$(PIP) install --no-deps --no-build-isolation -e .
