@@ -24,6 +24,8 @@ from lagnet.models.features import JointFeatures
 from lagnet.models.feed_forward import FeedForward
 from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_perceptron_delan
 from lagnet.models.scales import Scales
+from lagnet.models.serial_chain.dynamics import make_serial_chain
+from lagnet.models.serial_chain.settings import SerialChainSettings
 from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network, silenced
 
 
@@ -86,6 +88,7 @@ KINDS: dict[str, tuple[type, Callable[..., AbstractDynamics]]] = {
     "delan-blackbox": (BlackBoxSettings, lambda *given: FreeLagrangian(make_black_box(*given))),
     "ffnn": (TorqueNetworkSettings, lambda *given: FeedForward(make_torque_network(*given))),
     "delan-ffnn": (AugmentedSettings, _make_augmented),
+    "serial-chain": (SerialChainSettings, make_serial_chain),
 }
 
 

@@ -9,41 +9,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import jax
 import numpy as np
 
 from lagnet.errors import ModelError
 from lagnet.models.serial_chain.determinacy import Determinacy, determinacy
-from lagnet.models.serial_chain.joint_terms import check_joint_terms
 from lagnet.models.serial_chain.kinematics import revolute_mask
 from lagnet.models.serial_chain.refit import Refit, Refitted
-from lagnet.models.serial_chain.search import SearchSettings, search_axes, search_lengths
+from lagnet.models.serial_chain.search import search_axes, search_lengths
 from lagnet.models.serial_chain.separable import Samples, make_samples
+from lagnet.models.serial_chain.settings import SLOW, SerialChainSettings
 from lagnet.models.serial_chain.unknowns import Unknowns, normalise_gravity
 
-SLOW = 0.02  # of a joint's root-mean-square speed: where Coulomb friction changes sign
 PRECISION = 1e-7  # of a joint's torque: noise below this is not told from rounding, and weighs no more
-
-
-@dataclass(frozen=True)
-class SerialChainSettings:
-    """What to fit and how.
-
-    Args:
-        joint_terms: what each joint adds to the rigid arm; none for ideal torque.
-        holdout: share of the samples kept from fitting, to choose between candidates.
-        candidates: minima of the relaxed problem that are carried on where none is exact.
-        reweighings: rounds of estimating each joint's noise and refitting.
-        search: how long to look for the axes and lengths.
-    """
-
-    joint_terms: tuple[str, ...] = ()
-    holdout: float = 0.2
-    candidates: int = 3
-    reweighings: int = 2
-    search: SearchSettings = field(default_factory=SearchSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +108,7 @@ def fit_serial_chain(
 def _unknowns(v: np.ndarray, joint_types: Sequence[str], settings: SerialChainSettings) -> Unknowns:
     speed = np.sqrt(np.mean(np.square(v), axis=0))
     slow = tuple(float(s) for s in SLOW * np.where(speed > 0, speed, 1.0))
-    return Unknowns(revolute_mask(joint_types), check_joint_terms(settings.joint_terms), slow)
+    return Unknowns(revolute_mask(joint_types), settings.joint_terms, slow)
 
 
 def _check(motion: tuple[np.ndarray, ...], unknowns: Unknowns) -> None:

@@ -9,32 +9,10 @@ import numpy as np
 
 from lagnet.models.serial_chain.lifting import gravity_direction
 from lagnet.models.serial_chain.separable import Descent, Samples
-from lagnet.models.serial_chain.unknowns import STANDARD_GRAVITY, Unknowns
+from lagnet.models.serial_chain.settings import STANDARD_GRAVITY, SearchSettings
+from lagnet.models.serial_chain.unknowns import Unknowns
 
 SAME_MINIMUM = 0.02  # relative difference of cost below which two starts are taken to have found the same minimum
-
-
-@dataclass(frozen=True)
-class SearchSettings:
-    """How long to look.
-
-    Args:
-        batch: starts that descend together.
-        least_starts: starts made before a minimum is believed that leaves more than `convincing` of the torque.
-        most_starts: starts after which the best so far is taken.
-        iterations: steps a start.
-        convincing: share of the torque's energy; a minimum below it that two starts reached is believed at once.
-        exact: share below which one start is enough and stops: no wrong shape explains torque to this precision.
-        lengths: root mean square of the random offsets that the full problem starts from [m].
-    """
-
-    batch: int = 4
-    least_starts: int = 24
-    most_starts: int = 120
-    iterations: int = 40
-    convincing: float = 1e-3
-    exact: float = 1e-11
-    lengths: float = 0.3
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,7 @@ from lagnet.models.serial_chain.joint_terms import joint_term_columns
 from lagnet.models.serial_chain.kinematics import Geometry
 from lagnet.models.serial_chain.lifting import lifted_regressor
 from lagnet.models.serial_chain.newton_euler import moment_regressor
-
-STANDARD_GRAVITY = 9.80665  # [m/s²]
+from lagnet.models.serial_chain.settings import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
