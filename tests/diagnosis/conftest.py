@@ -54,7 +54,7 @@ class Plant:
         return Recording(time, q + ENCODER * rng.standard_normal(q.shape), tau, self.robot.joints)
 
     def usual_torque(self) -> np.ndarray:
-        """Scatter of each joint's body torque over poses and accelerations, shape (dof,): a sensor's noise is its own."""
+        """Scatter of each joint's body torque over poses and accelerations, shape (dof,)."""
         q, v, a = (np.random.default_rng(k).uniform(-1.0, 1.0, (400, self.robot.n_dof)) for k in range(3))
         return np.std(self.robot.inverse_dynamics(q, v, 4.0 * a), axis=0)
 
