@@ -19,7 +19,7 @@ MassMatrix = Float[np.ndarray, "n dof dof"]
 
 @runtime_checkable
 class InverseDynamics(Protocol):
-    """Rigid-body URDFs, learned models and corrected models all answer these calls; NumPy in, NumPy out, batch first."""
+    """URDFs, learned models and corrected models all answer these calls; NumPy in, NumPy out, batch first."""
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -30,9 +30,8 @@ def command(
     hidden, settings = draw_surprise(robot, seed), SimulationSettings(trajectories=4, seed=seed)
     recordings = out / "recordings"
     recordings.mkdir(parents=True, exist_ok=True)
-    say(
-        f"1. Physics is hidden in a {ROBOT.upper()}; the envelope has sha256 {seal(truth(robot, hidden, settings), out)}"
-    )
+    seal_of_truth = seal(truth(robot, hidden, settings), out)
+    say(f"1. Physics is hidden in a {ROBOT.upper()}; the envelope has sha256 {seal_of_truth}")
     paths = []
     for index, recording in enumerate(trajectories(robot, hidden, settings)):
         paths.append(write_recording(recording, recordings / f"trajectory_{index}.csv"))
