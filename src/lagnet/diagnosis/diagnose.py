@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.diagnosis.adequacy import withdraw
 from lagnet.diagnosis.arm_search import Found, search_arm
 from lagnet.diagnosis.compose import compose_verdict
 from lagnet.diagnosis.curves import collect_evidence
@@ -125,6 +126,9 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, seed: int) 
     judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     found = settle_on(bench, judge, found, problem.scale)
     found, fitted = refit_and_prune(problem, bench, found)
+    modest = withdraw(problem, bench, judge, found, fitted.effects, noise, seed)
+    if modest is not found:
+        found, fitted = refit_and_prune(problem, bench, modest)
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
     contests = hold_contests(bench, found)
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)

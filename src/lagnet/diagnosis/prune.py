@@ -11,9 +11,11 @@ from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.refit import Refit, refit, spread
 from lagnet.diagnosis.search import LEAST_OF_ALL, LEAST_TORQUE
 from lagnet.diagnosis.settle import without
+from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect, torque_with
 
 ROUNDS = 12
+UNSURE = 1e-9  # weight of an effect whose intervals all hold the value of its absence
 
 
 def named_effects(library: Library, found: Found) -> tuple[NamedEffect, ...]:
@@ -31,6 +33,9 @@ def refit_and_prune(problem: Problem, bench: Workbench, found: Found) -> tuple[F
         sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
         fitted = refit(problem, named_effects(bench.library, found), sigma)
         sizes = sizes_of(problem, fitted.effects)
+        for n, (effect, intervals) in enumerate(zip(fitted.effects, fitted.intervals, strict=True)):
+            if not effect_named(effect.effect).is_determined(intervals):
+                sizes[n] *= UNSURE  # not told from nothing: goes before all others
         smallest = min(range(len(sizes)), key=lambda n: sizes[n], default=None)
         if smallest is None or sizes[smallest] >= 1.0:
             break

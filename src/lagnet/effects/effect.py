@@ -60,6 +60,9 @@ class Effect(ABC):
     reaches_all: ClassVar[bool] = False  # True: it changes the torque of other joints too
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[Stage] = "torque"
+    absent: ClassVar[Mapping[str, float] | None] = (
+        None  # values at which it is not there; None: first parameter at zero
+    )
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod
@@ -102,6 +105,13 @@ class Effect(ABC):
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""
         return np.array([p.lower for p in self.parameters]), np.array([p.upper for p in self.parameters])
+
+    def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
+        """Whether some 95 % interval leaves out the value at which the effect would not be there."""
+        absent = ((self.parameters[0].name, 0.0),) if self.absent is None else self.absent
+        if not absent:
+            return True
+        return any(not intervals[name][0] <= value <= intervals[name][1] for name, value in absent)
 
     def feasible(self, values: Mapping[str, float]) -> bool:
         """Whether the parameters obey physics (bounds; pseudo-inertias positive definite where there are any)."""

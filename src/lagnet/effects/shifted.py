@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from lagnet.effects.motion import Motion
+
+SETTLING = 0.04  # [s] over which a modelled torque is smoothed before it may bend a joint
 
 
 def shifted_torque(
@@ -23,3 +26,15 @@ def shifted_torque(
         moved.append(signal)
     base = motion.remembered("nominal torque", lambda: motion.model.inverse_dynamics(motion.q, motion.v, motion.a))
     return motion.model.inverse_dynamics(*moved) - base
+
+
+def carried_torque(motion: Motion, joint: int) -> np.ndarray:
+    """Torque through a joint's transmission, shape (n,) [N m].
+
+    The recorded torque where there is one. The modelled one holds the acceleration of the motor as if it were that of
+    the link, and so the very jumps that the transmission hides from the link: it is smoothed.
+    """
+    if motion.recorded is not None:
+        return motion.recorded[:, joint]
+    step = float(np.median(np.diff(motion.time))) if motion.time.size > 1 else 1.0
+    return gaussian_filter1d(motion.load[:, joint], SETTLING / max(step, 1e-6), mode="nearest")

@@ -28,6 +28,7 @@ class GravityTilt(Effect):
     needs_bodies = True
     shown_by = "joints that do not turn about the vertical, in many poses"
     confused_with = ("encoder_offset", "payload", "torque_offset")
+    absent = (("theta_1", 0.0), ("theta_2", 0.0))
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:

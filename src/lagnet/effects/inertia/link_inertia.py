@@ -34,6 +34,7 @@ class LinkInertia(LinearEffect):
     stage = "body"
     shown_by = "all joints moving at once, with strong accelerations and in many poses"
     confused_with = ("payload", "rotor_inertia", "gravity_tilt", "torque_gain")
+    absent = tuple((n, 0.0) for n in NAMES)
     source = "gautier1990"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

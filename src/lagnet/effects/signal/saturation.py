@@ -24,6 +24,7 @@ class Saturation(Effect):
     stage = "signal"
     shown_by = "motions that ask for high torque"
     confused_with = ("torque_gain",)
+    absent = ()
     source = "swevers2007"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

@@ -8,7 +8,7 @@ import numpy as np
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_reversals
 from lagnet.effects.motion import Motion
-from lagnet.effects.shifted import shifted_torque
+from lagnet.effects.shifted import carried_torque, shifted_torque
 
 SMALL = 1e-4  # rad, gap at which the law is made linear
 SOFT = 0.05  # of the usual load: within it the flank that carries is not settled
@@ -30,8 +30,7 @@ class Backlash(Effect):
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        torque = motion.load if motion.recorded is None else motion.recorded
-        return (_displaced(motion, joint, torque[:, joint], SMALL) / SMALL)[..., None]
+        return (_displaced(motion, joint, carried_torque(motion, joint), SMALL) / SMALL)[..., None]
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"h": float(coefficients[0])}
@@ -39,7 +38,7 @@ class Backlash(Effect):
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         if values["h"] == 0.0:
             return np.zeros_like(motion.load)
-        return _displaced(motion, joint, motion.load[:, joint], values["h"])
+        return _displaced(motion, joint, carried_torque(motion, joint), values["h"])
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         load = motion.load[:, joint]

@@ -8,7 +8,7 @@ import numpy as np
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_motion
 from lagnet.effects.motion import Motion
-from lagnet.effects.shifted import shifted_torque
+from lagnet.effects.shifted import carried_torque, shifted_torque
 
 SMALL = 1e-3  # rad, size of the bend at which the law is made linear
 
@@ -26,12 +26,13 @@ class JointElasticity(Effect):
     stage = "body"
     shown_by = "quick changes of load and acceleration at the joint"
     confused_with = ("encoder_offset", "link_inertia", "rotor_inertia", "time_delay")
+    absent = ()
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        torque = motion.load if motion.recorded is None else motion.recorded
-        size = SMALL / max(float(np.max(np.abs(torque[:, joint]))), 1e-9)
-        return (_bend(motion, joint, torque[:, joint] * size) / size)[..., None]
+        torque = carried_torque(motion, joint)
+        size = SMALL / max(float(np.max(np.abs(torque))), 1e-9)
+        return (_bend(motion, joint, torque * size) / size)[..., None]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(1), np.full(1, np.inf)
@@ -49,7 +50,7 @@ class JointElasticity(Effect):
         return np.zeros(1), np.full(1, 1e3)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        return _bend(motion, joint, motion.load[:, joint] / values["K"])
+        return _bend(motion, joint, carried_torque(motion, joint) / values["K"])
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_motion(motion, joint)

@@ -28,6 +28,7 @@ class PreslidingHysteresis(StateEffect):
     shown_by = "slow reversals and small back-and-forth motions"
     confused_with = ("backlash", "stribeck_friction", "coulomb_friction")
     contains = ("coulomb_friction",)
+    absent = (("Fc", 0.0),)
     source = "canudas1995"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

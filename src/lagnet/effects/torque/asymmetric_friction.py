@@ -23,6 +23,7 @@ class AsymmetricFriction(LinearEffect):
     shown_by = "motion in both directions"
     confused_with = ("coulomb_friction", "torque_offset")
     contains = ("coulomb_friction",)
+    absent = (("Fc_plus", 0.0), ("Fc_minus", 0.0))
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

@@ -27,6 +27,7 @@ class StribeckFriction(Effect):
     shown_by = "slow passes through zero speed"
     confused_with = ("coulomb_friction", "backlash", "presliding_hysteresis")
     contains = ("coulomb_friction",)
+    absent = (("Fc", 0.0), ("Fs", 0.0))
     source = "armstrong1994"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

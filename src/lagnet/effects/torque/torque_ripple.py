@@ -28,6 +28,7 @@ class TorqueRipple(Effect):
     )
     shown_by = "a slow sweep over the whole range of the joint, sampled fast enough to resolve the ripple"
     confused_with = ("joint_spring",)
+    absent = (("amplitude", 0.0),)
     source = "swevers2007"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

@@ -1,0 +1,74 @@
+"""Withdraws names whose form does not fit: better no name than a wrong one for physics that is in no catalogue."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.diagnosis.arm_search import Found
+from lagnet.diagnosis.ceiling import find_ceiling, signals_of
+from lagnet.diagnosis.evidence_of import held_out_evidence
+from lagnet.diagnosis.fitting import Workbench
+from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.settle import without
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected import NamedEffect, torque_with
+
+MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
+SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
+STANDS = 10.0  # a name stands if it alone explains this many times what is left
+
+
+def withdraw(
+    problem: Problem,
+    bench: Workbench,
+    unseen: Workbench,
+    found: Found,
+    effects: tuple[NamedEffect, ...],
+    noise: np.ndarray,
+    seed: int,
+) -> Found:
+    """The selection less the local effects of joints where much is left that depends on the state of the arm.
+
+    Args:
+        effects: the selection refitted by the exact laws.
+        noise: shape (dof,), noise floor [N m].
+    """
+    doubtful = _doubtful(problem, effects, noise, seed)
+    if not doubtful:
+        return found
+    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
+    for index in found.selection:
+        h = bench.library.hypotheses[index]
+        local = h.joint in doubtful and not effect_named(h.effect).reaches_all
+        if local and parts[index].share < STANDS * doubtful[h.joint]:
+            found = without(bench, found, index)
+    return found
+
+
+def _doubtful(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray, seed: int) -> dict[int, float]:
+    """Joints where much predictable mismatch is left, with its share of the joint's mismatch."""
+    if not effects:
+        return {}
+    left = {name: _stack(problem, getattr(problem, name), effects) for name in ("fit", "holdout")}
+    nominal = _stack(problem, problem.holdout, ())
+    shares = {}
+    for joint in range(problem.n_dof):
+        before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
+        after = float(np.mean(left["holdout"][:, joint] ** 2)) - noise[joint] ** 2
+        if before > 0 and after > MUCH * before:
+            shares[joint] = after / before
+    if not shares:
+        return {}
+    seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
+    counts = np.concatenate([p.counts for p in problem.fit])
+    return {
+        j: s
+        for j, s in shares.items()
+        if find_ceiling(seen, left["fit"][:, j], counts[:, j], fresh, left["holdout"][:, j], seed).share > SMOOTH
+    }
+
+
+def _stack(problem: Problem, pieces: tuple, effects: tuple[NamedEffect, ...]) -> np.ndarray:
+    parts = [problem.reduce(p, p.tau - torque_with(p.motion(problem), effects)) * p.counts for p in pieces]
+    return np.concatenate(parts)
