@@ -161,7 +161,7 @@ def _errors(terms: Terms, believed: Terms | None, blocks: np.ndarray, seed: int)
 
 def _joint_types(model: Any, reference: Any | None) -> tuple[str, ...]:
     for source in (model, reference):
-        if hasattr(source, "joint_types"):
+        if source is not None and hasattr(source, "joint_types"):
             return tuple(source.joint_types)
     return ("revolute",) * model.n_dof
 
