@@ -40,8 +40,9 @@ def withdraw(
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
     for index in found.selection:
         h = bench.library.hypotheses[index]
-        local = h.joint in doubtful and not effect_named(h.effect).reaches_all
-        if local and parts[index].share < STANDS * doubtful[h.joint]:
+        if h.joint is None or effect_named(h.effect).reaches_all:
+            continue
+        if h.joint in doubtful and parts[index].share < STANDS * doubtful[h.joint]:
             found = without(bench, found, index)
     return found
 

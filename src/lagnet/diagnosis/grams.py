@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.diagnosis.library import Library
-from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long against the memory of the residual
 MOST_BLOCKS = 150  # longer recordings get longer blocks
+MOST_SAMPLES = 250_000  # at full rate: of longer recordings, pieces spread over them are evidence enough
 FOLDS = 6  # for judging a fit on blocks that it has not seen
 
 
@@ -42,7 +43,11 @@ class Grams:
 
 
 def collect_grams(problem: Problem, library: Library, pieces: tuple[Piece, ...]) -> Grams:
-    """Goes through the pieces one by one, so that memory holds the columns of one piece only."""
+    """Goes through the pieces one by one, so that memory holds the columns of one piece only.
+
+    Of more than `MOST_SAMPLES` samples, pieces spread evenly over them are taken: names rest on far fewer.
+    """
+    pieces = spread_evenly(pieces, MOST_SAMPLES)
     total = sum(p.keep.size for p in pieces)
     reduced_rate = total / max(1e-9, sum(np.ptp(p.time[p.keep]) for p in pieces if p.keep.size > 1))
     length = max(int(BLOCK * reduced_rate / problem.bandwidth), total // MOST_BLOCKS, 8)

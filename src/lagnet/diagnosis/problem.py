@@ -178,3 +178,12 @@ def _long_runs(flags: np.ndarray, window: int) -> np.ndarray:
 def same_recordings(pieces: Sequence[Piece]) -> list[int]:
     """Indices of the recordings that the pieces come from, in order."""
     return sorted({p.recording for p in pieces})
+
+
+def spread_evenly(pieces: Sequence[Piece], most: int) -> tuple[Piece, ...]:
+    """Pieces spread evenly over all, of together at most so many samples at full rate (at least one)."""
+    total = sum(p.time.size for p in pieces)
+    if total <= most:
+        return tuple(pieces)
+    wanted = max(1, int(len(pieces) * most / total))
+    return tuple(pieces[i] for i in np.unique(np.linspace(0, len(pieces) - 1, wanted).round().astype(int)))

@@ -10,7 +10,7 @@ from scipy.optimize import lsq_linear
 from scipy.stats import t as student
 
 from lagnet.diagnosis.grams import BLOCK
-from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import Effect
 from lagnet.models.corrected import NamedEffect, torque_with
@@ -28,6 +28,7 @@ MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pie
 RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
 BODIES = 2  # rounds over the bodies: making one consistent moves the others
 CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
+NOTHING = 1e-200  # power of a derivative that is zero
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -92,12 +93,8 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
 
 
 def spread(pieces: Sequence[Piece], most: int = MOST_SAMPLES) -> tuple[Piece, ...]:
-    """Pieces spread evenly over all, of together at most so many samples at full rate (at least one)."""
-    total = sum(p.time.size for p in pieces)
-    if total <= most:
-        return tuple(pieces)
-    wanted = max(1, int(len(pieces) * most / total))
-    return tuple(pieces[i] for i in np.unique(np.linspace(0, len(pieces) - 1, wanted).round().astype(int)))
+    """The pieces that a refit uses."""
+    return spread_evenly(pieces, most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,7 +186,9 @@ def _normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> 
 
 
 def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    power = np.diag(gram)
+    scale = np.zeros(len(gram))  # a coordinate without any say, such as a sense of rotation, stays where it is
+    scale[power > NOTHING] = 1.0 / np.sqrt(power[power > NOTHING])
     return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
 
 
@@ -202,7 +201,8 @@ def _bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper
     scaled, scale = _scaled(gram)
     root = np.linalg.cholesky(scaled).T
     target = np.linalg.solve(root.T, moment * scale)
-    low, high = np.minimum(lower, -1e-15) / scale, np.maximum(upper, 1e-15) / scale
+    size = np.where(scale > 0.0, scale, 1.0)
+    low, high = np.minimum(lower, -1e-15) / size, np.maximum(upper, 1e-15) / size
     return lsq_linear(root, target, bounds=(low, high), method="bvls").x * scale
 
 

@@ -17,6 +17,7 @@ from lagnet.effects.state.joint_elasticity import JointElasticity
 from lagnet.effects.state.presliding_hysteresis import PreslidingHysteresis
 from lagnet.effects.torque.asymmetric_friction import AsymmetricFriction
 from lagnet.effects.torque.coulomb_friction import CoulombFriction
+from lagnet.effects.torque.coupled_transmission import CoupledTransmission
 from lagnet.effects.torque.joint_spring import JointSpring
 from lagnet.effects.torque.load_dependent_friction import LoadDependentFriction
 from lagnet.effects.torque.quadratic_drag import QuadraticDrag
@@ -46,6 +47,7 @@ _EFFECTS: tuple[Effect, ...] = (
     Backlash(),
     PreslidingHysteresis(),
     Saturation(),
+    CoupledTransmission(),
 )
 
 CATALOGUE: dict[str, Effect] = {effect.name: effect for effect in _EFFECTS}

@@ -60,9 +60,7 @@ class Effect(ABC):
     reaches_all: ClassVar[bool] = False  # True: it changes the torque of other joints too
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[Stage] = "torque"
-    absent: ClassVar[Mapping[str, float] | None] = (
-        None  # values at which it is not there; None: first parameter at zero
-    )
+    absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod
