@@ -29,7 +29,5 @@ def build(parts: Decomposition) -> Section:
             key=lambda found: parts.term_errors[found[0]].nmse[found[1]],
         )
         value = float(parts.term_errors[name].nmse[joint])
-        tiles.append(
-            (percent(value), f"error (nMSE) of {name} torque of {parts.joints[joint]} against the reference")
-        )
+        tiles.append((percent(value), f"error (nMSE) of {name} torque of {parts.joints[joint]} against the reference"))
     return section("decomposition_headline", "", tiles=tiles, differentiated=parts.motion_from != "recorded")
