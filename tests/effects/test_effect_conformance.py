@@ -42,6 +42,7 @@ NAMES = [  # the words that stand in verdicts
     "presliding_hysteresis",
     "contact_force",
     "saturation",
+    "coupled_transmission",
 ]
 UNIT = re.compile(r"–|(1/)?(N|kg|m|s|rad|N m|kg m)[²³]?( (m|s|rad)[²³]?)*(/(N|kg|m|s|rad)[²³]?( (m|s)[²³]?)*)?")
 EFFECTS = [pytest.param(effect, id=name) for name, effect in CATALOGUE.items()]

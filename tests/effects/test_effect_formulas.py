@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,6 +93,16 @@ def elasticity(sweep, joint, values):
     return m.model.inverse_dynamics(q, v, a) - m.load
 
 
+def coupled(sweep, joint, values):
+    m, before = sweep.motion, joint - 1
+    speed, rate = m.v[:, joint] - m.v[:, before], m.a[:, joint] - m.a[:, before]
+    blur = np.sqrt(m.slow[joint] ** 2 + m.slow[before] ** 2)
+    drag_ = values["Fv"] * speed + values["Fc"] * np.tanh(speed / blur) + values["Ia"] * rate
+    out = np.zeros_like(m.q)
+    out[:, joint], out[:, before] = drag_, -drag_  # the power of the drag is drag · (v_j − v_(j−1))
+    return out
+
+
 def dahl(sweep, joint, values):
     time = sweep.motion.time
 
@@ -144,6 +155,7 @@ LAWS: dict[str, tuple[dict[str, float], Law, float]] = {
     "encoder_offset": ({"delta": 0.07}, encoder, ORACLE),
     "time_delay": ({"T": 0.013}, delay, SPLINE),
     "joint_elasticity": ({"K": 4000.0}, elasticity, DIFFERENCES),
+    "coupled_transmission": ({"Fv": 1.0, "Fc": 2.0, "Ia": 0.3, "sense": -1.0}, coupled, ORACLE),
     "presliding_hysteresis": ({"sigma0": 60.0, "Fc": 2.0}, dahl, DIFFERENCES),
     "saturation": (
         {"tau_max": 3.0},
@@ -160,7 +172,11 @@ def test_torque_is_the_law_of_the_catalogue(name: str, ur5, sweep, seed: int) ->
     values, law, tolerance = LAWS[name]
     effect, drawn = CATALOGUE[name], sweep(ur5, seed)
     joint = None if effect.whole_arm else seed % (5 if name == "link_inertia" else 6)
-    torque = effect.torque(drawn.motion, joint, values)
+    if name == "coupled_transmission":
+        joint = 1 + seed % 5
+    # a transmission bends under the torque that passes through it, which is recorded
+    motion = replace(drawn.motion, recorded=drawn.motion.load) if name == "joint_elasticity" else drawn.motion
+    torque = effect.torque(motion, joint, values)
     expected = law(drawn, joint, values)
     inside = slice(None) if tolerance == ORACLE else slice(8, -8)
     scale = max(np.abs(expected).max(), 1e-9 * np.abs(drawn.motion.load).max())
