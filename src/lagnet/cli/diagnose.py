@@ -37,13 +37,13 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Say where recordings and robot differ, and name the physics that was left out."""
-    if simulated or robot is None:
+    if bool(simulated) == bool(robot):
         raise LagnetError(
-            "no nominal model was given",
-            where="--robot",
-            next_step="give --robot a URDF, MJCF, name or a folder of train or diagnose",
+            "give either --robot or --simulated",
+            next_step="--robot takes a URDF, MJCF, name or folder; --simulated takes recordings of the simulator",
         )
     from lagnet.cli.console import numbers, say
+    from lagnet.cli.simulated import nominal_from
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.writing import write_diagnosis
     from lagnet.models.loading import load_any
@@ -51,13 +51,13 @@ def command(
     from lagnet.reports.diagnosis_report import write_report
 
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
-    model = load_any(robot)
+    model, missed = (load_any(robot), None) if robot else nominal_from(simulated or [], columns, constants, seed)
     read = [
         [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]
         for paths in (recordings, holdout or [])
     ]
     say(f"{sum(map(len, read))} recordings read, diagnosing")
-    result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, seed=seed)
+    result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     write_diagnosis(result, out)
     write_report(result.verdict.to_dict(), result.evidence, out / "report.html")
     for effect in result.effects:

@@ -18,6 +18,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from lagnet.cli.many_values import repeat_options
 from lagnet.errors import LagnetError
 
 COMMANDS = {
@@ -115,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code, see the module's docstring.
     """
-    words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    words = repeat_options(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     try:
         return build().main(words, prog_name="lagnet", standalone_mode=False) or DONE
     except LagnetError as error:

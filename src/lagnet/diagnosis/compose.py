@@ -31,6 +31,7 @@ from lagnet.recordings.recording import Recording
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
 
+KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant
 
 
@@ -71,7 +72,7 @@ def nominal_of(problem: Problem) -> dict[str, Any]:
     """What was held against the recordings."""
     model = problem.nominal
     return {
-        "kind": str(getattr(model, "kind", "learned")),
+        "kind": kind if (kind := str(getattr(model, "kind", ""))) in KINDS else "learned",
         "source": str(getattr(model, "source", "") or type(model).__name__),
         "sha256": str(getattr(model, "sha256", "")),
         "joints": list(problem.joints),

@@ -87,6 +87,7 @@ def diagnose(
     holdout: Sequence[Recording] | None = None,
     *,
     bandwidth: float | None = None,
+    nominal_error: np.ndarray | None = None,
     seed: int = 0,
 ) -> Diagnosis:
     """Says whether and where recordings differ from a model, names the physics left out, and corrects the model.
@@ -96,6 +97,8 @@ def diagnose(
         robot: the nominal model: a Robot, a learned model, or the corrected model of an earlier diagnosis.
         holdout: recordings that are not fitted; None: the last fifth of each recording.
         bandwidth: of the zero-phase low-pass on torques [Hz]; None: chosen from the data.
+        nominal_error: shape (dof,), torque that the nominal model is known to miss, such as a learned one [N m]; it
+            counts into the noise floor.
         seed: of everything random.
 
     Raises:
@@ -105,15 +108,17 @@ def diagnose(
     fit = condition(fit_on, bandwidth)
     unseen = condition(held, fit.bandwidth)
     problem = sharpen(pose_problem(robot, fit, unseen))
-    inquiry = inquire(problem, fit, unseen, seed)
+    noise = noise_floor(problem, fit, seed)
+    if nominal_error is not None:
+        noise = np.hypot(noise, nominal_error)
+    inquiry = inquire(problem, fit, unseen, noise, seed)
     corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
     return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen)
 
 
-def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, seed: int) -> Inquiry:
+def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.ndarray, seed: int) -> Inquiry:
     """The steps of a diagnosis in their order, on a problem already posed."""
-    noise = noise_floor(problem, fit, seed)
     library = build_library(problem)
     bench = make_workbench(library, collect_grams(problem, library, problem.fit))
     noise_power, torque_power = bench.samples * noise**2, bench.samples * problem.scale**2

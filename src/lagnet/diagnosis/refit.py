@@ -244,7 +244,8 @@ def _body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
     """Parameters (10,) of the body that an effect changes: none for a payload, else the modelled link."""
     if effect.effect == "payload" or effect.joint is None:
         return np.zeros(10)
-    return problem.nominal.inertial_parameters()[effect.joint]
+    bodies = problem.nominal.inertial_parameters
+    return np.asarray(bodies() if callable(bodies) else bodies)[effect.joint]
 
 
 def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:

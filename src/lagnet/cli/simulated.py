@@ -1,0 +1,25 @@
+"""The nominal model of `lagnet diagnose --simulated`: learned from the simulator's own recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lagnet.cli.console import say
+
+
+def nominal_from(
+    paths: Sequence[Path], columns: Path | None, constants: list[float] | None, seed: int
+) -> tuple[Any, np.ndarray]:
+    """The learned model, and the torque that it is known to miss, shape (dof,) [N m]."""
+    from lagnet.diagnosis.from_simulated import learn_nominal
+    from lagnet.recordings.load import load_recording
+
+    read = [load_recording(path, columns=columns, torque_constant=constants) for path in paths]
+    say(f"learning the simulator's arm from {len(read)} recordings")
+    learned = learn_nominal(read, seed=seed)
+    say(f"learned as {learned.kind}; held-out error {100 * float(np.max(learned.share)):.2g} % at its worst joint")
+    return learned.model, learned.error

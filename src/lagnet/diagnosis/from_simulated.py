@@ -1,0 +1,71 @@
+"""A nominal model where there is only a log of the simulator: the arm is learned from the simulated recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lagnet.recordings.recording import Recording
+from lagnet.recordings.splits import holdout_split
+
+EXACT = 1e-3  # held-out share of the torque variance up to which a serial chain is taken to be the simulator's arm
+MINUTES = 2.0  # for a network, where the simulator holds more than rigid bodies
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedNominal:
+    """A model of the simulator, and how far it can be trusted.
+
+    Args:
+        model: answers the calls of InverseDynamics.
+        kind: "serial-chain" or "delan".
+        error: shape (dof,), root mean square of the torque that it misses on held-out simulated motion [N m]; it counts
+            as noise in the diagnosis, so that the model's ignorance is never called physics.
+        share: shape (dof,), the same as a share of the torque's variance.
+    """
+
+    model: Any
+    kind: str
+    error: np.ndarray
+    share: np.ndarray
+
+
+def learn_nominal(
+    simulated: Sequence[Recording], joint_types: tuple[str, ...] | None = None, seed: int = 0
+) -> LearnedNominal:
+    """Learns the simulator's arm: a serial chain where one fits, else a Lagrangian network.
+
+    Args:
+        simulated: recordings of the simulator, of the joints of the real arm.
+        joint_types: of each joint; None to tell them from the motion.
+        seed: of the search and the training.
+    """
+    from lagnet.models.serial_chain.model import SerialChain
+    from lagnet.training.train import train
+
+    seen, unseen = holdout_split(simulated)
+    chain = train(seen, "serial-chain", seed=seed, holdout=unseen, joint_types=joint_types).model
+    error, share = _held_out(chain, unseen)
+    if np.max(share) < EXACT:
+        return LearnedNominal(SerialChain(chain), "serial-chain", error, share)
+    network = train(seen, "delan", seed=seed, holdout=unseen, joint_types=joint_types, minutes=MINUTES).model
+    other, other_share = _held_out(network, unseen)
+    if np.mean(other_share) < np.mean(share):
+        return LearnedNominal(network, "delan", other, other_share)
+    return LearnedNominal(SerialChain(chain), "serial-chain", error, share)
+
+
+def _held_out(model: Any, unseen: Sequence[Recording]) -> tuple[np.ndarray, np.ndarray]:
+    """Root mean square error and its share of the torque's variance on held-out simulated motion."""
+    from lagnet.diagnosis.problem import pose_problem
+    from lagnet.recordings.conditioning import condition
+
+    conditioned = condition(unseen)
+    problem = pose_problem(model, conditioned, conditioned)
+    rest = np.concatenate([problem.residual(p) for p in problem.fit])
+    torque = np.concatenate([problem.reduce(p, p.tau) for p in problem.fit])
+    error = np.sqrt(np.mean(rest**2, axis=0))
+    return error, error**2 / np.maximum(np.var(torque, axis=0), 1e-18)
