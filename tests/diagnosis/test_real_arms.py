@@ -78,7 +78,7 @@ def test_tx40_has_friction_and_rotors_on_its_uncoupled_joints(tx40) -> None:
 
 @pytest.mark.shared_data
 def test_tx40_s_coupled_wrist_is_unexplained_and_not_misnamed(tx40) -> None:
-    own = {"viscous_friction", "rotor_inertia", "torque_offset", "quadratic_drag"} | DRY
+    own = {"viscous_friction", "rotor_inertia", "torque_offset", "quadratic_drag", "coupled_transmission"} | DRY
     for left in tx40.verdict.unexplained[4:]:
         assert left.above_noise
         assert named(tx40, left.joint) <= own

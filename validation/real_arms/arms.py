@@ -14,7 +14,7 @@ DRY = (
     "load_dependent_friction",
     "presliding_hysteresis",
 )
-WRIST_NAMES = (*FRICTION, "rotor_inertia", "torque_offset")  # what a wrist of its own could have
+WRIST_NAMES = (*FRICTION, "rotor_inertia", "torque_offset", "coupled_transmission")  # what the wrist has
 UR10E_BOUNDS = (0.010, 0.005, 0.003, 0.014, 0.05, 0.025)
 TX40_MEAN = 0.035
 EMPS_PRINTED = {
