@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -156,7 +156,9 @@ def left_over(inquiry: Inquiry) -> Leftover:
     """Residuals of the corrected model on fit and held-out samples."""
     problem, parts = inquiry.problem, []
     for pieces in (problem.fit, problem.holdout):
-        rest = [problem.reduce(p, p.tau - torque_with(p.motion(problem), inquiry.refit.effects)) for p in pieces]
+        blind = [replace(p.motion(problem), recorded=None) for p in pieces]  # a prediction sees no recorded torque
+        predicted = [torque_with(m, inquiry.refit.effects) for m in blind]
+        rest = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
         parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
     seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     return Leftover(parts[0], parts[1], seen, unseen)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -47,7 +48,8 @@ CURVE = 201  # points of a drawn law
 def collect_evidence(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> Evidence:
     """All curves of one diagnosis."""
     problem = inquiry.problem
-    corrected = [torque_with(p.motion(problem), inquiry.refit.effects) for p in problem.holdout]
+    motions = [replace(p.motion(problem), recorded=None) for p in problem.holdout]
+    corrected = [torque_with(m, inquiry.refit.effects) for m in motions]
     return Evidence(
         joints=tuple(_joint(inquiry, corrected, held, j) for j in range(problem.n_dof)),
         contests=_contests(inquiry),

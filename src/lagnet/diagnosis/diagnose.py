@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from lagnet.diagnosis.noise_floor import noise_floor
 from lagnet.diagnosis.problem import Problem, pose_problem
 from lagnet.diagnosis.prune import refit_and_prune
 from lagnet.diagnosis.refit import Refit
+from lagnet.diagnosis.rest import friction_at_rest
 from lagnet.diagnosis.rivals import Contest, hold_contests
 from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
@@ -112,7 +113,7 @@ def diagnose(
     if nominal_error is not None:
         noise = np.hypot(noise, nominal_error)
     inquiry = inquire(problem, fit, unseen, noise, seed)
-    corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow)
+    corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow, inquiry.problem.held)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
     return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen)
 
@@ -135,6 +136,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     if modest is not found:
         found, fitted = refit_and_prune(problem, bench, modest)
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
+    problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
     contests = hold_contests(bench, found)
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
     return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed)

@@ -117,8 +117,8 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
         for joint in (None,) if effect.whole_arm else range(problem.n_dof):
             reason = _reason_against(effect, summary, joint, has_bodies)
             shapes = () if reason else effect.shapes(summary, joint)
-            if not shapes:
-                abstentions.append(Abstention(effect.name, joint, reason or "the speeds do not resolve its shape"))
+            if reason:
+                abstentions.append(Abstention(effect.name, joint, reason))
             for shape in shapes:
                 hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
                 widths.append(effect.columns(probe, joint, shape).shape[-1])

@@ -44,7 +44,9 @@ class Piece:
     def motion(self, problem: Problem) -> Motion:
         """The piece as the effects see it."""
         recorded = low_pass(self.tau, problem.rate, problem.bandwidth)
-        return Motion(self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal, recorded)
+        return Motion(
+            self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal, recorded, problem.held
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,8 @@ class Problem:
         rate, bandwidth: [Hz].
         slow: shape (dof,), blurred speed of each joint.
         joints: names.
+        scale: shape (dof,), standard deviation of the recorded torque [N m].
+        held: shape (dof,), share of the dry friction that stays at rest; None while it is not known.
     """
 
     nominal: InverseDynamics
@@ -67,6 +71,7 @@ class Problem:
     slow: np.ndarray
     joints: tuple[str, ...]
     scale: np.ndarray = field(default_factory=lambda: np.ones(0))
+    held: np.ndarray | None = None
 
     @property
     def n_dof(self) -> int:

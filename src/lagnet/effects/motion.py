@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.effects.rest import held_direction
 from lagnet.types import InverseDynamics, JointVector, Samples, Trajectory
 
 
@@ -21,6 +22,7 @@ class Motion:
         slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v) = tanh(v/ε).
         model: the nominal model, for effects that change bodies or gravity.
         recorded: shape (n, dof), recorded torque, low-passed [N m]; None where there is no recording.
+        held: shape (dof,), share of the dry friction that stays while a joint rests; None: none, or no order.
         cache: shared store of regressors that several effects need.
     """
 
@@ -32,6 +34,7 @@ class Motion:
     slow: JointVector
     model: InverseDynamics | Any
     recorded: Trajectory | None = None
+    held: JointVector | None = None
     cache: dict = field(default_factory=dict, repr=False)
 
     @property
@@ -41,7 +44,10 @@ class Motion:
 
     def direction(self, joint: int) -> np.ndarray:
         """s(v) = tanh(v / ε) of one joint, shape (n,): the sign of the velocity, smooth through zero."""
-        return np.tanh(self.v[:, joint] / self.slow[joint])
+        direction = np.tanh(self.v[:, joint] / self.slow[joint])
+        if self.held is None or not self.held[joint] > 0:
+            return direction
+        return held_direction(self.time, self.v[:, joint], self.slow[joint], direction, self.held[joint])
 
     def with_load(self, load: Trajectory) -> Motion:
         """The same motion under another model torque."""

@@ -70,6 +70,7 @@ class CorrectedModel:
         nominal: the model that was diagnosed.
         effects: what it lacks.
         slow: shape (dof,), blurred speed ε of s(v) = tanh(v/ε) [rad/s].
+        held: shape (dof,), share of the dry friction that stays while a joint rests; None: none.
         source: folder it was read from, "" if none.
         sha256: checksum of what it was read from.
     """
@@ -77,6 +78,7 @@ class CorrectedModel:
     nominal: InverseDynamics | Any
     effects: tuple[NamedEffect, ...]
     slow: JointVector
+    held: JointVector | None = None
     source: str = ""
     sha256: str = ""
     kind: str = field(default="corrected", init=False)
@@ -112,7 +114,7 @@ class CorrectedModel:
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque along a motion on an even clock, with delays and memory, shape (n, dof) [N m]."""
         load = torque_along(self.nominal, time, q, v, a)
-        return torque_with(self._motion(time, q, v, a, load), self.effects)
+        return torque_with(replace(self._motion(time, q, v, a, load), held=self.held), self.effects)
 
     def mass_matrix(self, q: Trajectory) -> MassMatrix:
         """Joint-space inertia with rotors and changed bodies, shape (n, dof, dof)."""

@@ -35,6 +35,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "joints": list(model.joints),
         "nominal": nominal,
         "slow": [float(s) for s in model.slow],
+        "held": None if model.held is None else [float(s) for s in model.held],
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
             for e in model.effects
@@ -92,15 +93,16 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> Corre
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
+        held = None if text.get("held") is None else np.array([float(s) for s in text["held"]])
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
     seen = file if file.is_file() else file / FILE
     if expected and (not seen.is_file() or _checksum(seen) != expected):
         raise ModelError("the nominal model beside it was changed or is missing", where=str(seen))
     nominal = load_any(file)
-    if tuple(nominal.joints) != joints or slow.shape != (len(joints),):
+    if tuple(nominal.joints) != joints or {len(slow), len(held) if held is not None else len(slow)} != {len(joints)}:
         raise ModelError("its joints are not those of its nominal model", where=str(where))
-    return CorrectedModel(nominal, effects, slow, source=str(folder), sha256=_checksum(where))
+    return CorrectedModel(nominal, effects, slow, held, source=str(folder), sha256=_checksum(where))
 
 
 def _read(where: Path) -> dict[str, Any]:

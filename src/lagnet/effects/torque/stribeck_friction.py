@@ -51,4 +51,7 @@ class StribeckFriction(Effect):
         return self.columns(motion, joint, values) @ np.array([values["Fc"], values["Fs"]])
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
-        return needs_slow_passes(motion, joint)
+        blurred = (
+            None if self.shapes(motion, joint) else "the speeds do not reach far enough above those that noise blurs"
+        )
+        return needs_slow_passes(motion, joint) or blurred
