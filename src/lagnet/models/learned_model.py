@@ -16,6 +16,7 @@ from lagnet.models.augmented import Augmented
 from lagnet.models.conservative import Conservative, FreeLagrangian
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.kinds import ModelSpec
+from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.types import MassMatrix, Samples, Trajectory
 
 CHUNK = 4096  # samples computed at a time: the working set stays in cache, memory stays bounded
@@ -108,9 +109,9 @@ class LearnedModel:
 
         return save_model(self, folder)
 
-    def _mechanics(self) -> Conservative | FreeLagrangian:
+    def _mechanics(self) -> Conservative | FreeLagrangian | SerialChainDynamics:
         dynamics = self.dynamics.mechanics if isinstance(self.dynamics, Augmented) else self.dynamics
-        if not isinstance(dynamics, Conservative | FreeLagrangian):
+        if not isinstance(dynamics, Conservative | FreeLagrangian | SerialChainDynamics):
             raise ModelError(f"a model of kind {self.model_kind} has no energies", choices=("delan", "delan-ffnn"))
         return dynamics
 

@@ -30,9 +30,18 @@ def load_any(spec: str | Path) -> Any:
         if (folder / "model.json").is_file():
             from lagnet.models.saving import load_model
 
-            return load_model(folder)
+            return with_bodies(load_model(folder))
     raise ModelError(
         "the folder holds neither a trained nor a corrected model",
         where=str(path),
         next_step="give a folder written by `lagnet train` or `lagnet diagnose`, or a URDF or MJCF file",
     )
+
+
+def with_bodies(model: Any) -> Any:
+    """The same model; a serial chain also answers for its links, so that a diagnosis can ask which of them is wrong."""
+    if model.model_kind != "serial-chain":
+        return model
+    from lagnet.models.serial_chain.model import SerialChain
+
+    return SerialChain(model)

@@ -159,7 +159,9 @@ def _refit_with_noise(
     data: _Data, x: np.ndarray, w: np.ndarray, size: np.ndarray, rounds: int, refit: Refit
 ) -> tuple[Refitted, np.ndarray]:
     """Free refit, joints weighed by 1 / noise as their residual shows it."""
-    noise = size
+    noise, links = size, 10 * refit.unknowns.n_dof
+    x, moments = normalise_gravity(refit.unknowns, x, w[:links].reshape(-1, 10))  # lengths and masses of ordinary size
+    w = np.concatenate([moments.ravel(), w[links:]])
     found = refit.free(make_samples(*data.train, noise=noise), x, w)
     for _ in range(rounds):
         noise = np.maximum(_residual(refit.unknowns, data.train, found).std(axis=0), PRECISION * size)

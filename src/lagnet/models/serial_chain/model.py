@@ -63,6 +63,21 @@ class SerialChain:
         return self.learned.n_dof
 
     @property
+    def model_kind(self) -> str:
+        """The kind of learned model this is."""
+        return self.learned.model_kind
+
+    @property
+    def spec(self) -> ModelSpec:
+        """All that the model is, but for its constants."""
+        return self.learned.spec
+
+    @property
+    def training(self) -> dict:
+        """What the fit said about itself; plain values."""
+        return self.learned.training
+
+    @property
     def gravity(self) -> np.ndarray:
         """Free fall in the model's base frame, shape (3,) [m/s²]."""
         return np.array(self.dynamics.lagrangian.geometry.gravity)
@@ -99,6 +114,14 @@ class SerialChain:
     def residual_torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Friction, offsets and springs of the joints, zero without such terms, shape (n, dof) [N m]."""
         return self.learned.residual_torque(q, v, a)
+
+    def kinetic_energy(self, q: Trajectory, v: Trajectory) -> np.ndarray:
+        """Energy of motion, shape (n,) [J]."""
+        return self.learned.kinetic_energy(q, v)
+
+    def potential_energy(self, q: Trajectory) -> np.ndarray:
+        """Energy of position of the rigid arm, up to a constant, shape (n,) [J]."""
+        return self.learned.potential_energy(q)
 
     def joint_torque_regressor(self, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
         """Torque per unit of each inertial parameter at the shape found, shape (n, dof, 10 dof)."""
