@@ -61,10 +61,11 @@ class PerceptronDelan(AbstractLagrangian):
     def factor(self, q: Vector) -> Matrix:
         """Upper-triangular U(q) with H = U Uᵀ, rows scaled by the inertia that torque and acceleration suggest."""
         n = q.shape[0]
-        raw = self.inertia(self.features(q))
-        diagonal = jax.nn.softplus(raw[:n]) + self.settings.floor
-        upper = jnp.zeros((n, n), raw.dtype).at[np.triu_indices(n, 1)].set(raw[n:])
-        return (jnp.diag(diagonal) + upper) * np.sqrt(np.asarray(self.scales.inertia)).astype(raw.dtype)[:, None]
+        raw = self.inertia(self.features(q)).reshape(n, n)
+        # Masks, not scattered entries: a scatter and its derivatives cost more here than both networks.
+        upper, diagonal = np.triu(np.ones((n, n)), 1).astype(raw.dtype), np.eye(n, dtype=raw.dtype)
+        factor = raw * upper + (jax.nn.softplus(raw) + self.settings.floor) * diagonal
+        return factor * np.sqrt(np.asarray(self.scales.inertia)).astype(raw.dtype)[:, None]
 
     def kinetic_energy(self, q: Vector, v: Vector) -> Scalar:
         return 0.5 * jnp.sum((self.factor(q).T @ v) ** 2)
@@ -88,7 +89,7 @@ def make_perceptron_delan(
     """Draw an untrained model."""
     n = len(features.joint_types)
     mass_key, potential_key = jax.random.split(key)
-    rows = (*range(n), *np.triu_indices(n, 1)[0].tolist())
+    rows = tuple(row for row in range(n) for _ in range(n))
     serial = settings.coupling == "serial"
     outboard = tuple(row + 1 for row in rows) if serial else (0,) * len(rows)
     shares = tuple(d for d in range(1, n) for _ in range(n - d)) if serial and n > 1 else (0,)

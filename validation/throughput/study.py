@@ -1,0 +1,134 @@
+"""How fast: a training step against the Hessian form, batched and single inverse dynamics. See README.md."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from lagnet.models import euler_lagrange
+from lagnet.models.delan import DelanSettings
+from lagnet.models.features import fit_features
+from lagnet.models.kinds import ModelSpec, draw
+from lagnet.models.learned_model import LearnedModel
+from lagnet.models.perceptron_delan import PerceptronDelanSettings
+from lagnet.models.scales import Scales
+from validation.throughput.hessian_form import hessian_inverse_dynamics
+
+HERE = Path(__file__).parent
+DOF, BATCH, MANY = 6, 512, 65_536
+KINDS: dict[str, Any] = {"delan-perceptron": PerceptronDelanSettings(hidden=(64, 64)), "delan": DelanSettings()}
+
+
+def made(kind: str) -> tuple[ModelSpec, Any]:
+    """An untrained six-joint model: speed does not depend on the weights."""
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (100, DOF))
+    features = fit_features(q, ("continuous",) * DOF)
+    names = tuple(f"joint_{i}" for i in range(DOF))
+    spec = ModelSpec(kind, KINDS[kind], names, features, Scales((1.0,) * DOF, (1.0,) * DOF, (1.0,) * DOF))
+    return spec, draw(spec, jax.random.key(0))
+
+
+def best_time(call: Callable[[], Any], repeats: int) -> float:
+    """Shortest wall-clock of some calls [s], after one that compiles: what the machine can do when left alone."""
+    jax.block_until_ready(call())
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        jax.block_until_ready(call())
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+def step_times(kind: str, repeats: int) -> dict[str, float]:
+    """Gradient of the torque error over one batch, by both formulations [s], timed in turn in one process."""
+    _, dynamics = made(kind)
+    arm, rest = eqx.partition(dynamics.lagrangian, eqx.is_array)
+    batch = tuple(jax.random.normal(k, (BATCH, DOF)) for k in jax.random.split(jax.random.key(1), 4))
+
+    def gradient(torque: Callable[..., Any]) -> Callable[[], Any]:
+        def loss(arm: Any) -> jax.Array:
+            model = eqx.combine(arm, rest)
+            found = jax.vmap(lambda q, v, a: torque(model, q, v, a))(*batch[:3])
+            return jnp.mean((found - batch[3]) ** 2)
+
+        compiled = jax.jit(jax.grad(loss))
+        return lambda: compiled(arm)
+
+    ours, usual = gradient(euler_lagrange.inverse_dynamics), gradient(hessian_inverse_dynamics)
+    return {"ours": best_time(ours, repeats), "hessian": best_time(usual, repeats)}
+
+
+def batched_rate(kind: str, repeats: int) -> float:
+    """Samples a second of inverse dynamics, single precision, weights built in."""
+    _, dynamics = made(kind)
+    torque = jax.jit(jax.vmap(dynamics.inverse_dynamics))
+    q, v, a = (jax.random.normal(k, (MANY, DOF)) for k in jax.random.split(jax.random.key(2), 3))
+    chunks = [(q[i : i + 2048], v[i : i + 2048], a[i : i + 2048]) for i in range(0, MANY, 2048)]
+    return MANY / best_time(lambda: [torque(*chunk) for chunk in chunks], repeats)
+
+
+def single_time(kind: str, repeats: int) -> float:
+    """Median wall-clock of one NumPy sample through LearnedModel, double precision [s]."""
+    model = LearnedModel(*made(kind))
+    q = np.full((1, DOF), 0.3)
+    model.inverse_dynamics(q, q, q)
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        model.inverse_dynamics(q, q, q)
+        times.append(time.perf_counter() - began)
+    return float(np.median(times))
+
+
+def matrix_rate(repeats: int) -> float:
+    """Operations a second of a plain single-precision matrix product here, the ceiling of any network."""
+    x = jax.random.normal(jax.random.key(0), (1024, 1024))
+    product = jax.jit(lambda x: x @ x)
+    return 2.0 * 1024**3 / best_time(lambda: product(x), repeats)
+
+
+def run(quick: bool) -> dict[str, Any]:
+    """All timings."""
+    repeats = 5 if quick else 60
+    out: dict[str, Any] = {"cores": os.cpu_count(), "load": os.getloadavg()[0], "matrix_flops": matrix_rate(repeats)}
+    for kind in KINDS:
+        steps = step_times(kind, repeats)
+        out[kind] = {
+            "step_seconds": steps,
+            "step_ratio": steps["hessian"] / steps["ours"],
+            "samples_per_second": batched_rate(kind, repeats),
+            "single_seconds": single_time(kind, 20 * repeats),
+        }
+        print(kind, out[kind], flush=True)
+    perceptron = out["delan-perceptron"]
+    out["passed"] = {
+        "step_ratio": perceptron["step_ratio"] >= 6.0,
+        "samples_per_second": perceptron["samples_per_second"] >= 1e6,
+        "single_seconds": perceptron["single_seconds"] <= 50e-6,
+    }
+    return out
+
+
+def main() -> None:
+    """Write result.json; in quick mode only print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a minute, for CI: runs everything, proves nothing")
+    quick = parser.parse_args().quick
+    result = run(quick)
+    print(json.dumps(result["passed"], indent=2))
+    if not quick:
+        (HERE / "result.json").write_text(json.dumps(result, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
