@@ -89,7 +89,7 @@ class Recording:
 
     def rows(self, keep: slice | np.ndarray) -> Recording:
         """The same recording with some of its samples."""
-        pick = {
-            n: getattr(self, n)[keep] for n in ("time", "q", "tau", "trajectory")
-        } | {n: None if getattr(self, n) is None else getattr(self, n)[keep] for n in ("v", "a")}
+        pick = {n: getattr(self, n)[keep] for n in ("time", "q", "tau", "trajectory")} | {
+            n: None if getattr(self, n) is None else getattr(self, n)[keep] for n in ("v", "a")
+        }
         return replace(self, **pick)
