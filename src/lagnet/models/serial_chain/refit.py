@@ -17,7 +17,7 @@ from scipy.linalg import block_diag, cho_factor, cho_solve
 
 from lagnet.models.serial_chain.inertia import from_standard, to_standard
 from lagnet.models.serial_chain.joint_terms import DISSIPATIVE_OR_MASSIVE
-from lagnet.models.serial_chain.separable import Samples, evaluate_at
+from lagnet.models.serial_chain.separable import EMPTY, Samples, evaluate_at
 from lagnet.models.serial_chain.unknowns import Unknowns
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import (
@@ -72,6 +72,7 @@ class Refit:
 
     def __init__(self, unknowns: Unknowns):
         self.unknowns = unknowns
+        self._penalty = jax.jit(lambda x: (unknowns.reach(x), jax.jacfwd(unknowns.reach)(x)))
         self._evaluate = jax.jit(lambda samples, x, w: evaluate_at(unknowns.full_design, samples, x, w))
 
     def free(self, samples: Samples, x: np.ndarray, w: np.ndarray, iterations: int = 40) -> Refitted:
@@ -107,22 +108,33 @@ class Refit:
         w, slope = linear(u)
         limit = np.concatenate([np.full(u.size, longest), self.unknowns.scale])
         sums = self._sums(samples, x, w)
+        weight = sums.cost / float(jnp.sum(samples.weight > 0))
         exact = EXACT * float(jnp.sum((samples.tau * samples.weight) ** 2))
+        with_penalty = self._penalised(sums, x, weight)
         damping, gain = 1e-6, np.inf
         for _ in range(iterations):
             if sums.cost < exact or damping > 1e5 or gain < SETTLED * sums.cost:
                 break
-            step = _damped_step(sums, slope, limit, damping)
+            step, damping = _damped_step(with_penalty, slope, limit, damping)
             u_new, x_new = u + step[: u.size], x + step[u.size :]
             w_new, slope_new = linear(u_new)
             tried = self._sums(samples, x_new, w_new)
-            if not tried.cost < sums.cost:
+            tried_with = self._penalised(tried, x_new, weight)
+            if not tried_with.cost < with_penalty.cost:
                 damping = 30.0 * max(damping, 1e-6)
                 continue
-            gain = sums.cost - tried.cost
-            x, u, w, slope, sums = x_new, u_new, w_new, slope_new, tried
+            gain = with_penalty.cost - tried_with.cost
+            x, u, w, slope, sums, with_penalty = x_new, u_new, w_new, slope_new, tried, tried_with
             damping = max(0.1 * damping, 1e-12)
         return Refitted(x, w, sums)
+
+    def _penalised(self, sums: Sums, x: np.ndarray, weight: float) -> Sums:
+        """The same sums with the penalty on long links, in the proportions of one torque's noise."""
+        thought, lean = map(np.asarray, self._penalty(jnp.asarray(x)))
+        gram, pull = sums.gram.copy(), sums.pull.copy()
+        gram[-x.size :, -x.size :] += weight * lean.T @ lean
+        pull[-x.size :] -= weight * lean.T @ thought
+        return Sums(sums.cost + weight * float(thought @ thought), gram, pull)
 
     def _sums(self, samples: Samples, x: np.ndarray, w: np.ndarray) -> Sums:
         sums = self._evaluate(samples, jnp.asarray(x), jnp.asarray(w))
@@ -130,16 +142,19 @@ class Refit:
         return Sums(float(sums.cost), both, np.concatenate([sums.pull, sums.slope]))
 
 
-def _damped_step(sums: Sums, slope: np.ndarray, limit: np.ndarray, damping: float) -> np.ndarray:
-    """Step in (u, x) with every unknown scaled to unit effect; those without effect stay."""
-    change = block_diag(slope, np.eye(limit.size - slope.shape[1]))
+def _damped_step(sums: Sums, slope: np.ndarray, limit: np.ndarray, damping: float) -> tuple[np.ndarray, float]:
+    """Step in (u, x), unknowns scaled to unit effect, damped until none goes beyond its limit; and the damping."""
+    change = np.asarray(block_diag(slope, np.eye(limit.size - slope.shape[1])))
     matrix, pull = change.T @ sums.gram @ change, change.T @ sums.pull
     size = np.sqrt(np.maximum(np.diag(matrix), 0.0))
-    size = np.where(size > 1e-12 * size.max(), size, np.inf)
+    size = np.where(size > EMPTY * size.max(), size, np.inf)
     matrix = matrix / np.outer(size, size)
-    np.fill_diagonal(matrix, 1.0 + damping + 1e-12)
-    step = cho_solve(cho_factor(matrix), pull / size) / size
-    return step * min(1.0, 0.5 / np.max(np.abs(step) / limit, initial=1e-300))
+    while True:
+        np.fill_diagonal(matrix, 1.0 + damping + 1e-12)
+        step = cho_solve(cho_factor(matrix), pull / size) / size
+        if np.max(np.abs(step) / limit, initial=0.0) < 0.5 or damping > 1e6:
+            return step, damping
+        damping *= 4.0
 
 
 def _physical(u: np.ndarray, links: int, positive: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

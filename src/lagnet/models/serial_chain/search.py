@@ -69,7 +69,7 @@ def search_lengths(
             down[0::4], down[1::4] = likely, -likely
         return np.hstack([np.tile(axes, (settings.batch, 1)), offsets, STANDARD_GRAVITY * down])
 
-    return _search(Descent(unknowns.full_design, samples, unknowns.scale), draw, settings)
+    return _search(Descent(unknowns.full_design, samples, unknowns.scale, unknowns.reach), draw, settings)
 
 
 def _search(descent: Descent, draw: Callable[[], np.ndarray], settings: SearchSettings) -> Found:

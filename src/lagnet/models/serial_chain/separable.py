@@ -18,12 +18,16 @@ import numpy as np
 from jax.scipy.linalg import cho_factor, cho_solve
 from jaxtyping import Array
 
+# penalty(x) -> residuals of what is thought of x beforehand, each as sure as one torque
+Penalty = Callable[[Array], Array]
+
 # design(x, q, v, a) -> (dof, number of linear unknowns) for one sample
 Design = Callable[[Array, Array, Array, Array], Array]
 
 RIDGE = (
     1e-10  # of the scaled normal matrix: holds undetermined unknowns near zero, moves determined ones by about as much
 )
+EMPTY = 1e-11  # of the largest column: what is smaller is a column of rounding errors, and its unknown stays zero
 LARGEST_STEP = 0.7  # in units of the scale of x: beyond this an angle's derivative says little
 
 
@@ -55,11 +59,12 @@ class Normal(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Where a start has got to: x, its damping and its sums."""
+    """Where a start has got to: x, its damping, its sums, and its cost with the penalty."""
 
     x: Array
     damping: Array
     normal: Normal
+    total: Array
 
 
 def make_samples(
@@ -79,7 +84,7 @@ def make_samples(
 def solve_linear(matrix: Array, right: Array) -> Array:
     """Solve normal equations after scaling each unknown to unit size, with a trace of ridge."""
     scale = jnp.sqrt(jnp.diag(matrix))
-    scale = jnp.where(scale > 0, scale, 1.0)
+    scale = jnp.where(scale > EMPTY * jnp.max(scale), scale, jnp.inf)
     scaled = matrix / jnp.outer(scale, scale) + RIDGE * jnp.eye(scale.size)
     divide = scale if right.ndim == 1 else scale[:, None]
     return cho_solve(cho_factor(scaled), right / divide) / divide
@@ -129,21 +134,32 @@ def _weighted(design: Design, x: Array, part: Samples) -> Array:
     return columns.reshape(-1, columns.shape[-1])
 
 
-def _step(design: Design, samples: Samples, scale: Array, point: Point) -> Point:
-    """One damped step, taken back where it does not lower the cost."""
-    normal = point.normal
+def no_penalty(x: Array) -> Array:
+    """Nothing is thought of x beforehand."""
+    return jnp.zeros(1)
+
+
+def _step(design: Design, penalty: Penalty, samples: Samples, scale: Array, point: Point) -> Point:
+    """One damped step, taken back where it does not lower the cost.
+
+    The penalty multiplies the cost, so that it weighs as the noise does and vanishes where torque is explained exactly.
+    """
+    normal, count = point.normal, jnp.sum(samples.weight > 0)
+    thought, lean = penalty(point.x), jax.jacfwd(penalty)(point.x)
+    share = jnp.where(jnp.isfinite(normal.cost), normal.cost, 0.0) / count
     reduced = normal.curvature - normal.cross.T @ solve_linear(normal.linear, normal.cross)
-    reduced = reduced * jnp.outer(scale, scale)
+    reduced = (reduced + share * lean.T @ lean) * jnp.outer(scale, scale)
     floor = 1e-7 * jnp.trace(reduced) / scale.size
     damped = reduced + jnp.diag(point.damping * (jnp.diag(reduced) + floor) + 1e-6 * floor + 1e-30)
-    step = jnp.linalg.solve(damped, normal.slope * scale)
+    step = jnp.linalg.solve(damped, (normal.slope - share * lean.T @ thought) * scale)
     step = step * jnp.minimum(1.0, LARGEST_STEP / (jnp.max(jnp.abs(step)) + 1e-300))
     x = point.x + step * scale
     tried = evaluate(design, samples, x)
-    better = tried.cost < normal.cost
+    total = tried.cost * (1.0 + jnp.sum(penalty(x) ** 2) / count)
+    better = total < point.total
     damping = jnp.clip(jnp.where(better, 0.2 * point.damping, 5.0 * point.damping), 1e-9, 1e9)
-    taken = jax.tree.map(partial(jnp.where, better), (x, tried), (point.x, normal))
-    return Point(taken[0], damping, taken[1])
+    taken = jax.tree.map(partial(jnp.where, better), (x, tried, total), (point.x, normal, point.total))
+    return Point(taken[0], damping, taken[1], taken[2])
 
 
 def _unvisited(x: Array, linear: int) -> Point:
@@ -158,14 +174,14 @@ def _unvisited(x: Array, linear: int) -> Point:
         jnp.zeros(m),
         jnp.zeros(k),
     )
-    return Point(x, jnp.full((), 0.5), normal)
+    return Point(x, jnp.full((), 0.5), normal, jnp.full((), jnp.inf))
 
 
 class Descent:
     """Compiled steps for one design and one set of samples, shared by all batches of starts."""
 
-    def __init__(self, design: Design, samples: Samples, scale: np.ndarray):
-        self._step = jax.jit(jax.vmap(lambda p, s: _step(design, s, jnp.asarray(scale), p), (0, None)))
+    def __init__(self, design: Design, samples: Samples, scale: np.ndarray, penalty: Penalty = no_penalty):
+        self._step = jax.jit(jax.vmap(lambda p, s: _step(design, penalty, s, jnp.asarray(scale), p), (0, None)))
         self._samples = samples
         self.energy = float(jnp.sum((samples.tau * samples.weight) ** 2))
         self._linear = jax.eval_shape(

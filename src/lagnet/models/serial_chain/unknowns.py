@@ -16,6 +16,8 @@ from lagnet.models.serial_chain.lifting import lifted_regressor
 from lagnet.models.serial_chain.newton_euler import moment_regressor
 from lagnet.models.serial_chain.settings import STANDARD_GRAVITY
 
+ORDINARY_LENGTH = 0.3  # [m]
+
 
 @dataclass(frozen=True)
 class Unknowns:
@@ -60,6 +62,16 @@ class Unknowns:
     def geometry(self, x: Array) -> Geometry:
         """Nonlinear unknowns of the full problem as an arm's shape."""
         return Geometry(self.angles(x), x[self.n_angles : -3].reshape(-1, 2), x[-3:])
+
+    def reach(self, x: Array) -> Array:
+        """Offsets in units of an ordinary arm's, whatever the unit of length that gravity's size implies.
+
+        Lengths and first moments enter the torque mostly as products, so noise leaves valleys along which a link grows
+        and its moments shrink; a penalty on this vector picks the shortest arm there.
+        """
+        size = jnp.linalg.norm(x[-3:])
+        unit = jnp.where(size > 0, STANDARD_GRAVITY / size, 1.0) / ORDINARY_LENGTH
+        return x[self.n_angles : -3] * unit
 
     def flatten(self, geometry: Geometry) -> np.ndarray:
         """The inverse of `geometry`."""
