@@ -12,6 +12,7 @@ from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
 
 EXACT = 1e-3  # held-out share of the torque variance up to which a serial chain is taken to be the simulator's arm
+MOST_SAMPLES = 2_000  # that a serial chain is searched with
 MINUTES = 2.0  # for a network, where the simulator holds more than rigid bodies
 
 
@@ -43,19 +44,31 @@ def learn_nominal(
         joint_types: of each joint; None to tell them from the motion.
         seed: of the search and the training.
     """
-    from lagnet.models.serial_chain.model import SerialChain
     from lagnet.training.train import train
 
     seen, unseen = holdout_split(simulated)
-    chain = train(seen, "serial-chain", seed=seed, holdout=unseen, joint_types=joint_types).model
+    chain = _chain(seen, joint_types, seed)
     error, share = _held_out(chain, unseen)
     if np.max(share) < EXACT:
-        return LearnedNominal(SerialChain(chain), "serial-chain", error, share)
+        return LearnedNominal(chain, "serial-chain", error, share)
     network = train(seen, "delan", seed=seed, holdout=unseen, joint_types=joint_types, minutes=MINUTES).model
     other, other_share = _held_out(network, unseen)
     if np.mean(other_share) < np.mean(share):
         return LearnedNominal(network, "delan", other, other_share)
-    return LearnedNominal(SerialChain(chain), "serial-chain", error, share)
+    return LearnedNominal(chain, "serial-chain", error, share)
+
+
+def _chain(seen: Sequence[Recording], joint_types: tuple[str, ...] | None, seed: int) -> Any:
+    """A serial chain from samples spread over the recordings: its search pays for every sample, and needs few."""
+    from lagnet.models.features import guess_joint_types
+    from lagnet.models.serial_chain.model import learn_serial_chain
+    from lagnet.training.samples import samples_of
+
+    samples = samples_of(seen)
+    rows = np.unique(np.linspace(0, len(samples) - 1, MOST_SAMPLES).round().astype(int))
+    q, v, a, tau = (x[rows] for x in (samples.q, samples.v, samples.a, samples.tau))
+    types = joint_types or guess_joint_types(samples.q)
+    return learn_serial_chain(q, v, a, tau, samples.joints, types, seed)[0]
 
 
 def _held_out(model: Any, unseen: Sequence[Recording]) -> tuple[np.ndarray, np.ndarray]:
