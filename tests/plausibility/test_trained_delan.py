@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from lagnet.models.saving import load_model
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.plausibility.suite import check
