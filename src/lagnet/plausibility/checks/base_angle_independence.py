@@ -9,7 +9,6 @@ from lagnet.plausibility.search import worst_configuration
 from lagnet.plausibility.subject import Subject
 
 SYMMETRIC = 1e-6  # of the torque: a reference that misses less than this is taken to stand upright
-LEARNED = 0.01  # of a joint's torque, for models that are not made of bodies
 APART = 0.37  # of the joint's range between the two angles compared; no simple fraction, so that no symmetry hides
 
 
@@ -19,10 +18,10 @@ class BaseAngleIndependence(Check):
     name = "base_angle_independence"
     title = "the angle of a vertical first axis does not matter"
     meaning = "Gravity and inertia look the same from every side; a model that sees a difference has learned noise."
-    justification = "Exact for an upright arm of bodies; one that learned its axes may miss 1 % of a joint's torque."
+    justification = "Exact for an upright arm; a learned model that was not built so needs a limit of its user's own."
 
     def limit(self, subject: Subject) -> float:
-        return subject.at_least_rounding(1e-7 if subject.offers("inertial_parameters") else LEARNED)
+        return subject.at_least_rounding(1e-7)
 
     def find(self, subject: Subject) -> Finding:
         if subject.ranges.joint_types[0] == "prismatic":
