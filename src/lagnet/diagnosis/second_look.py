@@ -8,8 +8,9 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
+from lagnet.diagnosis.grams import MOST_SAMPLES
 from lagnet.diagnosis.library import Hypothesis, Library
-from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
 from lagnet.diagnosis.search import LEAST_SHARE, LEAST_TORQUE
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.motion import Motion
@@ -35,23 +36,27 @@ def look_again(problem: Problem, bench: Workbench, found: Found) -> Library | No
 
 def _left(problem: Problem, library: Library, found: Found) -> tuple[Motion, np.ndarray]:
     """Motion and what the selection leaves, on the samples that count, shape (n, dof)."""
-    rests, parts = [], {name: [] for name in ("time", "q", "v", "a", "load")}
-    for piece in problem.fit:
-        columns = []
-        for joint, table in enumerate(library.tables(problem, piece)):
-            rest = table[:, -1].copy()
-            for i in found.selection:
-                if i in library.slots[joint]:
-                    rest -= table[:, library.slots[joint][i]] @ found.fit.coefficients[i]
-            columns.append(rest * piece.counts[:, joint])
-        rests.append(np.column_stack(columns))
-        for name, part in parts.items():
-            part.append(getattr(piece, name)[piece.keep])
-    arrays = {name: np.concatenate(part) for name, part in parts.items()}
-    motion = Motion(
-        arrays["time"], arrays["q"], arrays["v"], arrays["a"], arrays["load"], problem.slow, problem.nominal
-    )
-    return motion, np.concatenate(rests)
+    chosen, pieces = _chosen(library, found), spread_evenly(problem.fit, MOST_SAMPLES)
+    thetas = [found.fit.coefficients[i] for i in found.selection]
+    rests = [_rest(problem, chosen, thetas, piece) for piece in pieces]
+    names = ("time", "q", "v", "a", "load")
+    arrays = [np.concatenate([getattr(p, name)[p.keep] for p in pieces]) for name in names]
+    return Motion(*arrays, problem.slow, problem.nominal), np.concatenate(rests)
+
+
+def _chosen(library: Library, found: Found) -> Library:
+    """The hypotheses of a selection alone, in its order."""
+    hypotheses = tuple(library.hypotheses[i] for i in found.selection)
+    return Library(hypotheses, tuple(library.widths[i] for i in found.selection), library.n_dof, ())
+
+
+def _rest(problem: Problem, chosen: Library, thetas: list[np.ndarray], piece: Piece) -> np.ndarray:
+    columns = []
+    for joint, table in enumerate(chosen.tables(problem, piece)):
+        slots = chosen.slots[joint]
+        modelled = [table[:, at] @ thetas[n] for n, at in slots.items()]
+        columns.append((table[:, -1] - np.sum(modelled, axis=0)) * piece.counts[:, joint])
+    return np.column_stack(columns)
 
 
 def _worthwhile(columns: np.ndarray, residual: np.ndarray, scale: float) -> bool:

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.problem import Problem, spread_evenly
 
 FACTORS = (0.3, 1.0, 3.0, 9.0, 27.0)  # of the blurred speed
 CLEAR = 0.97  # of the error at the blurred speed itself, below which another sharpness is taken
+MOST_SAMPLES = 60_000  # at full rate: of longer recordings, pieces spread over them
 STRONG = 0.02  # of the residual that dry friction must explain before its sharpness means anything
 
 
@@ -29,7 +30,7 @@ def sharpen(problem: Problem) -> Problem:
 def _error(problem: Problem, joint: int, slow: float | None) -> float:
     """Squared error of a joint's residual after viscous and dry friction, inertia, offset, spring and gain."""
     tables, targets = [], []
-    for piece in problem.fit:
+    for piece in spread_evenly(problem.fit, MOST_SAMPLES):
         v = piece.v[:, joint]
         columns = [v, piece.a[:, joint], piece.q[:, joint], piece.load[:, joint], np.ones_like(v)]
         if slow is not None:
