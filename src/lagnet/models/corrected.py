@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, final
 
 import numpy as np
@@ -11,10 +12,19 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError
+from lagnet.models.tilted_bodies import tilted_weight
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, JointVector, MassMatrix, Samples, Trajectory
 
 STAGES = ("body", "torque", "signal")
+OF_BODIES = {
+    "gravity",
+    "gravity_regressor",
+    "inertial_parameters",
+    "joint_torque_regressor",
+    "link_regressor",
+    "with_gravity",
+}
 UNORDERED = 1.0  # [s] between samples of which no order is known: nothing carries over from one to the next
 
 
@@ -58,6 +68,8 @@ def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
         seen = motion.with_load(load)
         for effect in (e for e in effects if effect_named(e.effect).stage == stage):
             load = load + effect.added(motion.with_load(load) if stage == "signal" else seen)
+        if stage == "body":
+            load = load + tilted_weight(motion, effects)
     return load
 
 
@@ -103,6 +115,8 @@ class CorrectedModel:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name in {"nominal", "effects"}:
             raise AttributeError(name)
+        if name in OF_BODIES and hasattr(self.nominal, name) and self._changes_bodies:
+            return getattr(self._changed, name)
         return getattr(self.nominal, name)  # limits, joint types, regressors of bodies, skeleton
 
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
@@ -150,6 +164,14 @@ class CorrectedModel:
     def bodies(self) -> Any:
         """The nominal robot with payload, link changes and tilt written into it; other effects have no place in one."""
         return apply_to_bodies(self.nominal, self.effects)
+
+    @cached_property
+    def _changes_bodies(self) -> bool:
+        return any(e.effect in ("payload", "link_inertia", "gravity_tilt") for e in self.effects)
+
+    @cached_property
+    def _changed(self) -> Any:
+        return self.bodies()
 
     def _of_bodies(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque of the rigid part alone, before friction and sensors, shape (n, dof)."""

@@ -1,0 +1,57 @@
+"""The weight of changed bodies in the changed field of gravity: what payload and tilt have only together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.motion import Motion
+
+TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
+
+
+class Named(Protocol):
+    """An effect with its place and parameters."""
+
+    @property
+    def effect(self) -> str: ...
+    @property
+    def joint(self) -> int | None: ...
+    @property
+    def values(self) -> Mapping[str, float]: ...
+    @property
+    def interval(self) -> tuple[float, float] | None: ...
+
+
+def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
+    """Holding torque of payloads and link changes in the difference of gravity, shape (n, dof) [N m]; 0 without both.
+
+    Either effect alone is computed with the bodies and the gravity of the nominal model, which leaves this product out.
+    Bodies that are carried for a while only are left out.
+    """
+    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
+    tilts = [e for e in effects if e.effect == TILT]
+    if not bodies or not tilts:
+        return 0.0
+    gravity = np.asarray(motion.model.gravity, dtype=float)
+    change = sum((_law(e).gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
+    return sum((_weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
+
+
+def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
+    link = motion.n_dof - 1 if body.joint is None else body.joint
+    fields = motion.remembered(f"weights_{link}", lambda: _fields(motion, link))
+    return np.einsum("gnji,i,g->nj", fields, _law(body).coordinates(body.values), gravity)
+
+
+def _fields(motion: Motion, link: int) -> np.ndarray:
+    """Holding torque per unit of each parameter of a body and of gravity along each axis, shape (3, n, dof, 10)."""
+    rest = np.zeros_like(motion.q)
+    return np.stack([motion.model.with_gravity(g).link_regressor(link, motion.q, rest, rest) for g in np.eye(3)])
+
+
+def _law(effect: Named) -> Any:
+    return effect_named(effect.effect)

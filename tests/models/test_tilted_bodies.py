@@ -1,0 +1,50 @@
+"""Bodies and gravity changed together give the torque of an arm that has both written into it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.rigid_body.robot import load_description
+
+IDENTITY = 1e-9  # rounding in float64
+PAYLOAD = {"m": 1.5, "cx": 0.02, "cy": -0.03, "cz": 0.08} | dict.fromkeys(("Ixx", "Iyy", "Izz"), 0.01)
+PAYLOAD |= dict.fromkeys(("Ixy", "Ixz", "Iyz"), 0.0)
+CHANGE = effect_named("link_inertia").from_coordinates(np.array([0.4, 0.02, -0.01, 0.03, 2e-3, 0, 3e-3, 0, 0, 1e-3]))
+TILT = NamedEffect("gravity_tilt", None, {"theta_1": 0.2, "theta_2": -0.1})
+BODIES = (NamedEffect("payload", None, PAYLOAD), NamedEffect("link_inertia", 2, CHANGE))
+SLOW = np.full(6, 0.02)
+
+
+@pytest.fixture(scope="module")
+def ur5():
+    return load_description("ur5")
+
+
+@pytest.fixture(scope="module")
+def samples():
+    rng = np.random.default_rng(4)
+    return [rng.uniform(-2.0, 2.0, (30, 6)) for _ in range(3)]
+
+
+@pytest.mark.parametrize("order", [(TILT, *BODIES), (*BODIES, TILT)])
+def test_tilt_and_bodies_together_are_those_written_into_the_arm(ur5, samples, order) -> None:
+    model = CorrectedModel(ur5, order, SLOW)
+    expected = model.bodies().inverse_dynamics(*samples)
+    np.testing.assert_allclose(model.inverse_dynamics(*samples), expected, rtol=0, atol=1e3 * IDENTITY)
+
+
+def test_the_part_that_only_both_have_is_no_rounding(ur5, samples) -> None:
+    alone = [CorrectedModel(ur5, part, SLOW).inverse_dynamics(*samples) for part in ((TILT,), BODIES, ())]
+    together = CorrectedModel(ur5, (TILT, *BODIES), SLOW).inverse_dynamics(*samples)
+    assert np.max(np.abs(together - (alone[0] + alone[1] - alone[2]))) > 0.1
+
+
+@pytest.mark.parametrize(("first", "second"), [((TILT,), BODIES), (BODIES, (TILT,))])
+def test_calibrated_and_then_diagnosed_again_is_the_same_arm(ur5, samples, first, second) -> None:
+    model = CorrectedModel(CorrectedModel(ur5, first, SLOW), second, SLOW)
+    expected = CorrectedModel(ur5, (*first, *second), SLOW).bodies().inverse_dynamics(*samples)
+    np.testing.assert_allclose(model.inverse_dynamics(*samples), expected, rtol=0, atol=1e3 * IDENTITY)
+    np.testing.assert_allclose(model.gravity, CorrectedModel(ur5, (TILT,), SLOW).bodies().gravity, atol=IDENTITY)
