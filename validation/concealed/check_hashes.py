@@ -10,7 +10,7 @@ from pathlib import Path
 def broken(folder: Path) -> list[str]:
     """Files whose bytes are not what was published, or that are missing."""
     wrong = []
-    for listing, inside in (("seals.sha256", "envelopes"), ("verdicts.sha256", "")):
+    for listing, inside in (("seals.sha256", "envelopes"), ("witnesses.sha256", "witnesses"), ("verdicts.sha256", "")):
         for line in (folder / listing).read_text().splitlines():
             published, name = line.split("  ", 1)
             file = folder / inside / name
