@@ -26,10 +26,11 @@ class HeldOut:
 
 def unseen_nmse(bench: Workbench, fit: Fit, unseen: Workbench, scale: np.ndarray) -> np.ndarray:
     """nMSE of a fit on held-out blocks, shape (dof,)."""
-    return _unseen_error(fit, unseen) / unseen.samples / scale**2
+    return error_of(fit, unseen) / unseen.samples / scale**2
 
 
-def _unseen_error(fit: Fit, unseen: Workbench) -> np.ndarray:
+def error_of(fit: Fit, unseen: Workbench) -> np.ndarray:
+    """Squared error of a fit on the blocks of a workbench, shape (dof,)."""
     error = np.zeros(unseen.library.n_dof)
     for joint, total in enumerate(unseen.total):
         own = [i for i in fit.selection if i in unseen.library.slots[joint]]

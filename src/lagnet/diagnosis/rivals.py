@@ -49,7 +49,7 @@ def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest
     here, error = view.score(own), view.loss(own)[0]
     odds: dict[str, float] = {}
     tied: set[str] = set()
-    for names, other in _replacements(view, own, index):
+    for names, other in replacements(view, own, index):
         score = view.score(other)
         if not np.isfinite(score):
             continue
@@ -63,7 +63,7 @@ def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest
     return Contest(index, _ranked(odds), tuple(sorted(tied)))
 
 
-def _replacements(
+def replacements(
     view: JointView, own: tuple[int, ...], index: int
 ) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
     """Selections with another hypothesis in its place, alone, for it and a neighbour, or two in its place."""
@@ -81,7 +81,11 @@ def _replacements(
             both = {own_name, hypotheses[gone].effect} <= {*hypotheses[k].law.confused_with}
             if both and compatible(view, left, k):
                 yield (hypotheses[k].effect,), (*left, k)
-    near = [k for k in fresh if hypotheses[k].effect in hypotheses[index].law.confused_with]
+    near = [
+        k
+        for k in fresh
+        if hypotheses[k].effect in hypotheses[index].law.confused_with and own_name not in hypotheses[k].law.contains
+    ]
     for n, k in enumerate(near):  # two laws for one
         for m in near[n + 1 :]:
             if compatible(view, rest, k) and compatible(view, (*rest, k), m):
