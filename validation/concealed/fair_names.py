@@ -68,6 +68,16 @@ def match(plan: Plan, witness: Witness, claims: list[Claim]) -> dict[int, tuple[
     return pairs
 
 
+def is_part_of_a_tie(plan: Plan, claim: Claim, paired: dict[int, Claim]) -> bool:
+    """Whether a claim is the other half of two that stand, tied, for one hidden cause."""
+    for i, other in paired.items():
+        cause = plan.hidden[i]
+        both = cause.effect in claim.tied and cause.effect in other.tied
+        if both and claim.joint == other.joint == cause.joint and len(claim.names) <= LARGEST_TIE:
+            return True
+    return False
+
+
 def is_beside(plan: Plan, witness: Witness, claim: Claim) -> bool:
     """Whether a claim that names no hidden cause is true all the same."""
     if "time_delay" in claim.names and plan.current_filter:

@@ -16,7 +16,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from validation.concealed.blind import diagnose_blind
-from validation.concealed.gain import gain_share
+from validation.concealed.gain import gain_shares
 from validation.plants.catalogue.draw_plan import draw_plan
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.simulate import simulate
@@ -69,7 +69,7 @@ class Run:
     def _conduct_one(self, plan: Plan, simulators: ProcessPoolExecutor) -> tuple[str, str]:
         with tempfile.TemporaryDirectory() as folder:
             try:
-                witness, beyond = simulators.submit(simulate, plan, Path(folder)).result()
+                witness, truth = simulators.submit(simulate, plan, Path(folder)).result()
             except Exception as error:
                 self._put(plan, "failures", f"not simulated: {error}".encode(), ".txt")
                 return plan.name, f"was not simulated: {error}"
@@ -78,7 +78,8 @@ class Run:
         self._publish("verdicts.sha256", blind.verdict, f"verdicts/{plan.name}.json")
         if blind.verdict:
             self._put(plan, "verdicts", blind.verdict)
-        share = gain_share(plan, blind.torques, beyond) if blind.verdict and plan.hidden else None
+        judged = blind.verdict and plan.hidden
+        shares = gain_shares(plan, blind.torques, truth) if judged else (None, None)
         self._open(
             plan,
             witness,
@@ -86,7 +87,8 @@ class Run:
                 "seconds": blind.seconds,
                 "processor_seconds": blind.processor_seconds,
                 "message": blind.message,
-                "gain_share": share,
+                "gain_share": shares[0],
+                "gain_share_with_rest": shares[1],
             },
         )
         return plan.name, f"{blind.processor_seconds:.1f} s {blind.message}"

@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from validation.concealed.fair_names import Claim, claims_of, is_beside, joints_of, match
+from validation.concealed.fair_names import Claim, claims_of, is_beside, is_part_of_a_tie, joints_of, match
 from validation.concealed.parameters import errors_of
 from validation.plants.catalogue.plan import Plan, opened
 from validation.plants.catalogue.witness import Witness, read_witness
@@ -41,7 +41,7 @@ class Score:
         claims: (effect, joint, tied names, "right", "beside" or "wrong").
         joint_right, joint_judged: of the claims that name a hidden effect, those on its joint, and all.
         errors, covered: see `parameters`.
-        gain_share: see `gain`; None where nothing listed alone was hidden.
+        gain_share, gain_share_with_rest: see `gain`; None where nothing or something unlisted was hidden.
         seconds, processor_seconds: of the diagnosis.
         failure: why there is no verdict.
     """
@@ -56,6 +56,7 @@ class Score:
     errors: dict[str, float] = field(default_factory=dict)
     covered: dict[str, bool] = field(default_factory=dict)
     gain_share: float | None = None
+    gain_share_with_rest: float | None = None
     seconds: float = 0.0
     processor_seconds: float = 0.0
     failure: str = ""
@@ -108,6 +109,7 @@ def score(plan: Plan, witness: Witness, verdict: dict | None, outcome: dict) -> 
         errors,
         covered,
         None if strange else outcome["gain_share"],
+        None if strange else outcome["gain_share_with_rest"],
         outcome["seconds"],
         outcome["processor_seconds"],
         outcome["message"] if verdict is None else "",
@@ -141,8 +143,13 @@ def _judged_claims(
     plan: Plan, witness: Witness, claims: list[Claim], pairs: dict[int, tuple[int, str]]
 ) -> list[tuple[str, str | None, list[str], str]]:
     taken = {c for c, _ in pairs.values()}
+    paired = {i: claims[c] for i, (c, _) in pairs.items()}
     out = []
     for c, claim in enumerate(claims):
-        judged = "right" if c in taken else ("beside" if is_beside(plan, witness, claim) else "wrong")
+        judged = (
+            "right"
+            if c in taken
+            else ("beside" if (is_part_of_a_tie(plan, claim, paired) or is_beside(plan, witness, claim)) else "wrong")
+        )
         out.append((claim.effect, claim.joint, list(claim.tied), judged))
     return out

@@ -61,6 +61,9 @@ def figures(scores: Sequence[Score]) -> dict:
         "median_parameter_error": _median([e for s in scores for e in s.errors.values()]),
         "interval_coverage": _share(sum(covered), len(covered)),
         "median_gain_share": _median(gains),
+        "median_gain_share_with_rest": _median(
+            [s.gain_share_with_rest for s in scores if s.gain_share_with_rest is not None]
+        ),
         "share_of_plants_with_gain_over_95_percent": _share(sum(g >= 0.95 for g in gains), len(gains)),
         "median_seconds": _median([s.seconds for s in scores]),
         "median_processor_seconds": _median([s.processor_seconds for s in scores]),

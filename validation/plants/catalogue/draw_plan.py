@@ -61,7 +61,7 @@ def draw_plan(seed: int, number: int, robots: tuple[str, ...] = ROBOTS) -> Plan:
     """The plan of that number; the same seed and number draw the same plan."""
     rng = np.random.default_rng([seed, number, 5])
     group, rank = GROUPS[number % len(GROUPS)], _rank(number)
-    frame = _frame(number, group, robots[(number + number // len(robots)) % len(robots)], rng)
+    frame = _frame(number, group, robots[(number + number // len(GROUPS)) % len(robots)], rng)
     hidden: tuple[Hidden, ...] = ()
     if group == "listed":
         hidden = _listed(frame, rank, 1 + int(rng.choice(3, p=[0.4, 0.4, 0.2])), rng)

@@ -24,12 +24,11 @@ BANDWIDTH = {"computed_torque": (40.0, 120.0), "pd_with_gravity": (25.0, 50.0), 
 BESIDE_A_GEAR = 35.0  # [rad/s]: the controller of a two-mass joint stays below its resonance
 
 
-def simulate(plan: Plan, folder: Path) -> tuple[Witness, np.ndarray]:
+def simulate(plan: Plan, folder: Path) -> tuple[Witness, Costs]:
     """Write the recordings of a plan into `folder`; the truth is not among them.
 
     Returns:
-        What a recording can show of each hidden cause, and the torque that the held-out recording truly has beyond
-        the nominal bodies, without noise, shape (n, dof).
+        What the recordings can show of each hidden cause, and what each costs along the held-out one.
     """
     folder.mkdir(parents=True, exist_ok=True)
     parts, nominal = assemble(plan), PinocchioBodies(plan.robot)
@@ -40,7 +39,7 @@ def simulate(plan: Plan, folder: Path) -> tuple[Witness, np.ndarray]:
         rng = np.random.default_rng([plan.seed, index, 1])
         write_csv(folder / f"{name}.csv", record(plan, parts, true_run, rng))
         costs.append(costs_of(plan, parts, true_run, nominal))
-    return bear_witness(plan, costs[:-1], nominal), costs[-1].beyond
+    return bear_witness(plan, costs[:-1], nominal), costs[-1]
 
 
 def _run(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Reference) -> TrueRun:
