@@ -73,8 +73,11 @@ class Score:
 
 
 def read_scores(out: Path) -> list[Score]:
-    """Scores of every finished plant in a run's folder, in order."""
-    return [_read(out, file) for file in sorted((out / "envelopes").glob("*.json"))]
+    """Scores of every finished plant in a run's folder, in order; a plant that was never simulated is a failure."""
+    scores = [_read(out, file) for file in sorted((out / "envelopes").glob("*.json"))]
+    done = {s.plant for s in scores}
+    lost = [file for file in sorted((out / "failures").glob("*.txt")) if file.stem not in done]
+    return scores + [Score(file.stem, "not simulated", "", [], failure=file.read_text()) for file in lost]
 
 
 def _read(out: Path, envelope: Path) -> Score:

@@ -34,9 +34,13 @@ def computed_torque(bodies: PinocchioBodies, wanted: Reference, omega: np.ndarra
     return Controller(torque, np.zeros_like(omega))
 
 
+LIGHTEST = 0.02  # of the arm's largest inertia: a wrist's drive is made for tools too
+
+
 def _gains(bodies: PinocchioBodies, wanted: Reference, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     few = wanted.q[:: max(1, wanted.q.shape[0] // 50)]
     inertia = np.mean([np.diag(bodies.inertia(q)) for q in few], axis=0)
+    inertia = np.maximum(inertia, LIGHTEST * inertia.max())
     return inertia * omega**2, 2 * inertia * omega
 
 

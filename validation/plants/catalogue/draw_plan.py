@@ -159,9 +159,14 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def draw_hidden(
-    plan: Plan, kind: str, rng: np.random.Generator, size: float | None = None, joint: int | None = None
+    plan: Plan,
+    kind: str,
+    rng: np.random.Generator,
+    size: float | None = None,
+    joint: int | None = None,
+    least: float = SMALLEST,
 ) -> Hidden | None:
-    """One listed cause at a joint that can show it; None where no try found one."""
+    """One listed cause, of at least a size, at a joint that can show it; None where no try found one."""
     scale = scale_of_plan(plan)
     for _ in range(TRIES):
         j = int(rng.choice(arm_joints(plan.robot))) if joint is None else joint
@@ -170,7 +175,7 @@ def draw_hidden(
         if values is None:
             continue
         got = _clipped_size(kind, scale, j, wanted, values)
-        if got >= 0.99 * SMALLEST:
+        if got >= 0.99 * least:
             name = None if kind in WHOLE_ARM else joint_names(plan.robot)[j]
             return Hidden(kind, name, {k: float(x) for k, x in values.items()}, got)
     return None
