@@ -11,6 +11,7 @@ import numpy as np
 from lagnet._version import __version__
 from lagnet.diagnosis.ceiling import Ceiling, Signals, find_ceiling, signals_of
 from lagnet.diagnosis.localisation import locate
+from lagnet.diagnosis.passing_words import in_spells, passing_effects, spell_warnings, spells_in_fit
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.rivals import Contest
 from lagnet.diagnosis.verdict import (
@@ -32,13 +33,14 @@ if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
 
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
+MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is left is said to depend on time
 ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant
 
 
 def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
     """All parts of the verdict."""
     problem = inquiry.problem
-    effects = _effects(inquiry)
+    effects = _strongest_first((*_effects(inquiry), *passing_effects(inquiry, fit)))
     conditioning = {
         "rate_hz": inquiry.fit.rate,
         "bandwidth_hz": inquiry.fit.bandwidth,
@@ -58,7 +60,7 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
         unexplained=tuple(_unexplained(inquiry, after, j) for j in range(problem.n_dof)),
         fit=tuple(_fit(inquiry, after, j) for j in range(problem.n_dof)),
         abstentions=_abstentions(inquiry),
-        warnings=tuple(dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)),
+        warnings=(*dict.fromkeys(w for r in (*fit, *held) for w in r.warnings), *spell_warnings(inquiry, fit, held)),
     )
 
 
@@ -101,7 +103,7 @@ def _mismatch(inquiry: Inquiry, joint: int) -> JointMismatch:
     residual = rest[:, joint] * counts[:, joint]
     rms = float(np.sqrt(np.sum(residual**2) / max(1, counts[:, joint].sum())))
     noise = float(inquiry.noise[joint])
-    where = locate(problem, residual, joint, is_prismatic(problem, joint))
+    where = locate(problem, residual, joint, is_prismatic(problem, joint), spells_in_fit(inquiry))
     return JointMismatch(
         joint=problem.joints[joint],
         significant=bool(rms > ABOVE * noise),
@@ -114,13 +116,17 @@ def _mismatch(inquiry: Inquiry, joint: int) -> JointMismatch:
 
 def _effects(inquiry: Inquiry) -> tuple[EffectFound, ...]:
     contests = {c.index: c for c in inquiry.contests}
-    pairs = []
+    out = []
     for n, index in enumerate(inquiry.found.selection):
         part = inquiry.held_out[index]
         rival, odds = contests[index].best_rival
         evidence = EffectEvidence(part.without, part.with_it, part.share, rival, odds)
-        pairs.append((part.share, _effect(inquiry, n, contests[index], evidence)))
-    return tuple(effect for _, effect in sorted(pairs, key=lambda p: -p[0]))
+        out.append(_effect(inquiry, n, contests[index], evidence))
+    return tuple(out)
+
+
+def _strongest_first(effects: Sequence[EffectFound]) -> tuple[EffectFound, ...]:
+    return tuple(sorted(effects, key=lambda e: -e.evidence.share_of_mismatch))
 
 
 def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence) -> EffectFound:
@@ -134,7 +140,7 @@ def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence
     joint = None if named.joint is None else inquiry.problem.joints[named.joint]
     status = "tied" if contest.tied else "named"
     words = explain(law, joint, parameters, contest.tied, evidence)
-    return EffectFound(law.name, joint, status, contest.tied, parameters, evidence, words, named.interval)
+    return EffectFound(law.name, joint, status, contest.tied, parameters, evidence, words)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +163,7 @@ def left_over(inquiry: Inquiry) -> Leftover:
     problem, parts = inquiry.problem, []
     for pieces in (problem.fit, problem.holdout):
         blind = [replace(p.motion(problem), recorded=None) for p in pieces]  # a prediction sees no recorded torque
-        predicted = [torque_with(m, inquiry.refit.effects) for m in blind]
+        predicted = [torque_with(m, inquiry.effects) for m in blind]
         rest = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
         parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
     seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
@@ -176,7 +182,10 @@ def _unexplained(inquiry: Inquiry, after: Leftover, joint: int) -> Unexplained:
     above = bool(np.sqrt(left) > ABOVE * np.sqrt(noise))
     ceiling = ceiling_of(inquiry, after, joint) if above else Ceiling(0.0, ())
     share = float(np.clip(max(0.0, left - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if above else 0.0
-    return Unexplained(problem.joints[joint], above, share, ceiling.depends_on)
+    depends_on = ceiling.depends_on
+    if above and "time" not in depends_on and in_spells(inquiry, after.holdout[0][:, joint]) > MOSTLY:
+        depends_on = ("time", *depends_on)
+    return Unexplained(problem.joints[joint], above, share, depends_on)
 
 
 def ceiling_of(inquiry: Inquiry, after: Leftover, joint: int) -> Ceiling:

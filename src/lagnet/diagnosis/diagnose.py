@@ -18,6 +18,7 @@ from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.grams import collect_grams
 from lagnet.diagnosis.library import Library, build_library
 from lagnet.diagnosis.noise_floor import noise_floor
+from lagnet.diagnosis.passing import Passing, settle_passing
 from lagnet.diagnosis.problem import Problem, pose_problem
 from lagnet.diagnosis.prune import refit_and_prune
 from lagnet.diagnosis.refit import Refit
@@ -26,10 +27,11 @@ from lagnet.diagnosis.rivals import Contest, hold_contests
 from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.sharpness import sharpen
+from lagnet.diagnosis.spells import Spell
 from lagnet.diagnosis.unjudged import contests_with_unjudged
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected import CorrectedModel
+from lagnet.models.corrected import CorrectedModel, NamedEffect
 from lagnet.recordings.conditioning import Conditioned, condition
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
@@ -67,7 +69,10 @@ class Diagnosis:
 
 @dataclass(frozen=True, eq=False)
 class Inquiry:
-    """All that the steps of one diagnosis found out, for those who put it into words and pictures."""
+    """All that the steps of one diagnosis found out, for those who put it into words and pictures.
+
+    `refit` holds what lasts; `passing` what acts for a while only; `spells` the intervals that have no name.
+    """
 
     problem: Problem
     fit: Conditioned
@@ -81,6 +86,13 @@ class Inquiry:
     held_out: dict[int, HeldOut]
     refit: Refit
     seed: int
+    passing: tuple[Passing, ...] = ()
+    spells: tuple[Spell, ...] = ()
+
+    @property
+    def effects(self) -> tuple[NamedEffect, ...]:
+        """What lasts and what passes."""
+        return (*self.refit.effects, *(p.effect for p in self.passing))
 
 
 def diagnose(
@@ -114,7 +126,8 @@ def diagnose(
     if nominal_error is not None:
         noise = np.hypot(noise, nominal_error)
     inquiry = inquire(problem, fit, unseen, noise, seed)
-    corrected = CorrectedModel(robot, inquiry.refit.effects, problem.slow, inquiry.problem.held)
+    inquiry = settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
+    corrected = CorrectedModel(robot, inquiry.effects, inquiry.problem.slow, inquiry.problem.held)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
     return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen)
 

@@ -113,7 +113,7 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
     hypotheses: list[Hypothesis] = []
     widths: list[int] = []
     abstentions: list[Abstention] = []
-    for effect in effects or tuple(CATALOGUE.values()):
+    for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
         for joint in (None,) if effect.whole_arm else range(problem.n_dof):
             reason = _reason_against(effect, summary, joint, has_bodies)
             shapes = () if reason else effect.shapes(summary, joint)

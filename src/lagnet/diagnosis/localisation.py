@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -35,18 +35,25 @@ class Regime:
     lift: float
 
 
-def locate(problem: Problem, residual: np.ndarray, joint: int, prismatic: bool) -> tuple[Regime, ...]:
+Span = tuple[int, float, float]
+"""Recording, start and end [s] of an interval."""
+
+
+def locate(
+    problem: Problem, residual: np.ndarray, joint: int, prismatic: bool, spans: Sequence[Span] = ()
+) -> tuple[Regime, ...]:
     """The regimes of a joint where its residual concentrates, strongest first, and 'everywhere' where it does not.
 
     Args:
         residual: shape (n,), on the samples of the fit pieces that count.
+        spans: intervals that are tried beside those of equal length.
     """
     power = residual**2
     total = float(power.sum())
     if not total > 0:
         return ()
     found: list[Regime] = []
-    for kind, rule, inside in _regimes(problem, joint, "m" if prismatic else "rad"):
+    for kind, rule, inside in _regimes(problem, joint, "m" if prismatic else "rad", spans):
         time = float(inside.mean())
         if np.count_nonzero(inside) >= FEW and time < 0.7:
             share = float(power[inside].sum() / total)
@@ -63,7 +70,7 @@ def _joined(pieces: tuple[Piece, ...], name: str, joint: int) -> np.ndarray:
     return np.concatenate([getattr(p, name)[p.keep, joint] for p in pieces])
 
 
-def _regimes(problem: Problem, joint: int, unit: str) -> Iterator[tuple[str, str, np.ndarray]]:
+def _regimes(problem: Problem, joint: int, unit: str, spans: Sequence[Span]) -> Iterator[tuple[str, str, np.ndarray]]:
     q, v, a, load = (_joined(problem.fit, n, joint) for n in ("q", "v", "a", "load"))
     near = np.concatenate([_near_reversal(p, joint)[p.keep] for p in problem.fit])
     yield "velocity_reversal", f"within {AFTER_REVERSAL:g} s of a change of sign of v_{joint}", near
@@ -83,18 +90,20 @@ def _regimes(problem: Problem, joint: int, unit: str) -> Iterator[tuple[str, str
     edges = np.linspace(q.min(), q.max(), PARTS + 1)
     for low, high in pairwise(edges):
         yield "position", f"{low:.3g} ≤ q_{joint} < {high:.3g} {unit}", (q >= low) & (q < high)
-    yield from _times(problem)
+    yield from _times(problem, spans)
 
 
-def _times(problem: Problem) -> Iterator[tuple[str, str, np.ndarray]]:
+def _times(problem: Problem, spans: Sequence[Span]) -> Iterator[tuple[str, str, np.ndarray]]:
     recording = np.concatenate([np.full(p.keep.size, p.recording) for p in problem.fit])
     time = np.concatenate([p.time[p.keep] for p in problem.fit])
+    parts = list(spans)
     for index in np.unique(recording):
         own = recording == index
         edges = np.linspace(time[own].min(), time[own].max() + 1e-9, PARTS + 1)
-        for low, high in pairwise(edges):
-            rule = f"{low:.3g} s ≤ t < {high:.3g} s of recording {index + 1}"
-            yield "time_interval", rule, own & (time >= low) & (time < high)
+        parts += [(int(index), float(low), float(high)) for low, high in pairwise(edges)]
+    for index, low, high in parts:
+        rule = f"{low:.3g} s ≤ t < {high:.3g} s of recording {index + 1}"
+        yield "time_interval", rule, (recording == index) & (time >= low) & (time < high)
 
 
 def _near_reversal(piece: Piece, joint: int) -> np.ndarray:

@@ -29,6 +29,7 @@ class Piece:
         recording: index of its recording.
         keep: rows that count after low-pass and decimation, edges left out.
         counts: shape (len(keep), dof), False where the joint rests and dry friction may take any value.
+        origin: index of the fitted recording that it is a part of; None for another recording.
     """
 
     time: np.ndarray
@@ -40,13 +41,13 @@ class Piece:
     recording: int
     keep: np.ndarray
     counts: np.ndarray
+    origin: int | None = None
 
     def motion(self, problem: Problem) -> Motion:
         """The piece as the effects see it."""
         recorded = low_pass(self.tau, problem.rate, problem.bandwidth)
-        return Motion(
-            self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal, recorded, problem.held
-        )
+        seen = (self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal)
+        return Motion(*seen, recorded, problem.held, self.origin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,15 +101,23 @@ class Problem:
         return Motion(time, q, v, a, load, self.slow, self.nominal, recorded)
 
 
-def pose_problem(nominal: InverseDynamics, fit: Conditioned, holdout: Conditioned) -> Problem:
+def pose_problem(
+    nominal: InverseDynamics, fit: Conditioned, holdout: Conditioned, ends_of: Sequence[int | None] = ()
+) -> Problem:
     """Computes the nominal torque on every stretch and picks the samples that count.
+
+    Args:
+        ends_of: for each held-out recording the index of the fitted one that it is the end of, None for another.
 
     Raises:
         DiagnosisError: no stretch is long enough.
     """
     slow = blurred_speed(fit)
     empty = Problem(nominal, (), (), fit.rate, fit.bandwidth, slow, tuple(nominal.joints))
-    posed = replace(empty, fit=tuple(_pieces(empty, fit)), holdout=tuple(_pieces(empty, holdout)))
+    fitted = tuple(replace(p, origin=p.recording) for p in _pieces(empty, fit))
+    origins = dict(enumerate(ends_of))
+    held = tuple(replace(p, origin=origins.get(p.recording)) for p in _pieces(empty, holdout))
+    posed = replace(empty, fit=fitted, holdout=held)
     if not posed.fit or not posed.holdout:
         raise DiagnosisError(
             "no stretch of motion is long enough to be filtered",

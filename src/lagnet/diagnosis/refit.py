@@ -11,8 +11,6 @@ from scipy.stats import t as student
 
 from lagnet.diagnosis.grams import BLOCK
 from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
-from lagnet.effects.catalogue import effect_named
-from lagnet.effects.effect import Effect
 from lagnet.models.corrected import NamedEffect, torque_with
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import (
@@ -26,6 +24,7 @@ STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's 
 DONE = 1e-6  # relative change of the error at which the steps end
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
 RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
+BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 BODIES = 2  # rounds over the bodies: making one consistent moves the others
 CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
 NOTHING = 1e-200  # power of a derivative that is zero
@@ -54,20 +53,14 @@ class _Slots:
     effects: tuple[NamedEffect, ...]
     starts: np.ndarray
 
-    def law(self, n: int) -> Effect:
-        return effect_named(self.effects[n].effect)
-
     def of(self, n: int) -> slice:
         return slice(int(self.starts[n]), int(self.starts[n + 1]))
 
     def named(self, x: np.ndarray) -> tuple[NamedEffect, ...]:
-        return tuple(
-            NamedEffect(e.effect, e.joint, self.law(n).from_coordinates(x[self.of(n)]), e.interval)
-            for n, e in enumerate(self.effects)
-        )
+        return tuple(e.at_coordinates(x[self.of(n)]) for n, e in enumerate(self.effects))
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        pairs = [self.law(n).coordinate_bounds() for n in range(len(self.effects))]
+        pairs = [e.coordinate_bounds() for e in self.effects]
         return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
 
 
@@ -81,8 +74,7 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
     """
     if not effects:
         return Refit((), (), np.zeros((0, 0)))
-    laws = [effect_named(e.effect) for e in effects]
-    parts = [law.coordinates(e.values) for law, e in zip(laws, effects, strict=True)]
+    parts = [e.coordinates() for e in effects]
     slots = _Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
     work = _Work(problem, spread(problem.fit), sigma, slots)
     x = work.descend(np.clip(np.concatenate(parts), *slots.bounds()), np.ones(int(slots.starts[-1]), dtype=bool))
@@ -211,7 +203,7 @@ def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
     for n, effect in enumerate(work.slots.effects):
         if effect.effect not in ("payload", "link_inertia"):
             continue
-        own = np.arange(x.size)[work.slots.of(n)]
+        own = np.arange(x.size)[work.slots.of(n)][:BODY]
         base = _body_before(work.problem, effect)
         if is_physically_consistent(base + x[own]):
             continue
@@ -262,20 +254,20 @@ def _intervals(
     width = float(student.ppf(0.975, freedom))
     out = []
     for n in range(len(slots.effects)):
-        law, at = slots.law(n), slots.of(n)
-        here = law.from_coordinates(x[at])
-        slopes = np.array([_slope(law, x[at], k, here) for k in range(x[at].size)]).T  # (parameters, coordinates)
+        effect, at = slots.effects[n], slots.of(n)
+        here = effect.at_coordinates(x[at]).parameters()
+        slopes = np.array([_slope(effect, x[at], k, here) for k in range(x[at].size)]).T  # (parameters, coordinates)
         variance = np.einsum("pk,kl,pl->p", slopes, covariance[at, at], slopes)
         spread_of = dict(zip(here, width * np.sqrt(np.maximum(variance, 0.0)), strict=True))
         out.append({k: (float(x - spread_of[k]), float(x + spread_of[k])) for k, x in here.items()})
     return tuple(out)
 
 
-def _slope(law: Effect, x: np.ndarray, k: int, here: dict[str, float]) -> list[float]:
+def _slope(effect: NamedEffect, x: np.ndarray, k: int, here: dict[str, float]) -> list[float]:
     step = 1e-6 * max(abs(x[k]), 1e-3)
     moved = x.copy()
     moved[k] += step
-    there = law.from_coordinates(moved)
+    there = effect.at_coordinates(moved).parameters()
     return [(there[name] - here[name]) / step for name in here]
 
 

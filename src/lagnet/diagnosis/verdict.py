@@ -33,7 +33,10 @@ class EffectEvidence:
 
 @dataclass(frozen=True)
 class EffectFound:
-    """Physics that was left out. `joint` is None for an effect of the whole arm."""
+    """Physics that was left out. `joint` is None for an effect of the whole arm.
+
+    What acts for a while only has the interval and the recording in which it does.
+    """
 
     effect: str
     joint: str | None
@@ -43,6 +46,7 @@ class EffectFound:
     evidence: EffectEvidence
     explanation: str
     interval_s: tuple[float, float] | None = None
+    recording: str | None = None
 
     def value(self, parameter: str) -> float:
         """The fitted value of a parameter by name."""
@@ -117,6 +121,9 @@ class Verdict:
         """Plain values, every number finite."""
         plain = asdict(self)
         joints = plain.pop("joints")
+        for effect in plain["effects"]:
+            if effect["recording"] is None:
+                del effect["recording"]
         ordered = {"schema": SCHEMA, "lagnet_version": plain.pop("lagnet_version"), "seed": plain.pop("seed")}
         for name in ("nominal", "recordings", "conditioning"):
             ordered[name] = plain.pop(name)

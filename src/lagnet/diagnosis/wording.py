@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from lagnet.diagnosis.tie_advice import recording_against
 from lagnet.diagnosis.verdict import EffectEvidence, NamedParameter
 from lagnet.effects.effect import Effect
 
@@ -20,7 +21,27 @@ def explain(
     first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
     first += f"{percent(evidence.holdout_nmse_with)}."
     if tied:
-        first += f" These recordings cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
+        first += f" These recordings cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}. "
+        first += f"What would: {'; '.join(dict.fromkeys(recording_against([law.name], [t]) for t in tied))}."
+    return first
+
+
+def explain_passing(
+    law: Effect,
+    interval: tuple[float, float],
+    recording: str,
+    parameters: Sequence[NamedParameter],
+    tied: Sequence[str],
+    evidence: EffectEvidence,
+) -> str:
+    """What acted, when, in which recording, and what it does for parts of that time that were not fitted."""
+    shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in parameters[:MOST_PARAMETERS])
+    first = f"{law.title} from {interval[0]:.4g} s to {interval[1]:.4g} s of {recording}, {law.formula} with {shown}: "
+    first += f"in that time the error is {percent(evidence.holdout_nmse_without)} of the torque's variance without it, "
+    first += f"{percent(evidence.holdout_nmse_with)} with it, each part predicted from the others. "
+    first += "The corrected model has it in that time of that recording only."
+    if tied:
+        first += f" This time cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
     return first
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lagnet.effects.effect import Effect
+from lagnet.effects.external.contact_force import ContactForce
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.inertia.link_inertia import LinkInertia
 from lagnet.effects.inertia.payload import Payload
@@ -48,6 +49,7 @@ _EFFECTS: tuple[Effect, ...] = (
     PreslidingHysteresis(),
     Saturation(),
     CoupledTransmission(),
+    ContactForce(),
 )
 
 CATALOGUE: dict[str, Effect] = {effect.name: effect for effect in _EFFECTS}

@@ -61,6 +61,7 @@ class Effect(ABC):
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[Stage] = "torque"
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
+    passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod

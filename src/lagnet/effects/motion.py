@@ -23,6 +23,7 @@ class Motion:
         model: the nominal model, for effects that change bodies or gravity.
         recorded: shape (n, dof), recorded torque, low-passed [N m]; None where there is no recording.
         held: shape (dof,), share of the dry friction that stays while a joint rests; None: none, or no order.
+        recording: which of the recordings under diagnosis it is a part of; None: none of them.
         cache: shared store of regressors that several effects need.
     """
 
@@ -35,6 +36,7 @@ class Motion:
     model: InverseDynamics | Any
     recorded: Trajectory | None = None
     held: JointVector | None = None
+    recording: int | None = None
     cache: dict = field(default_factory=dict, repr=False)
 
     @property

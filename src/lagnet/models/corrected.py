@@ -25,6 +25,7 @@ OF_BODIES = {
     "link_regressor",
     "with_gravity",
 }
+EDGES = ("t0", "t1")  # start and end of what lasts for a while
 UNORDERED = 1.0  # [s] between samples of which no order is known: nothing carries over from one to the next
 
 
@@ -37,15 +38,40 @@ class NamedEffect:
         joint: index of the joint, None for the whole arm.
         values: parameters by name, SI units.
         interval: (start, end) [s] outside which the effect is absent; None: always there.
+        recording: index of the fitted recording in which it was found; nowhere else does it act. None: in any.
     """
 
     effect: str
     joint: int | None
     values: Mapping[str, float]
     interval: tuple[float, float] | None = None
+    recording: int | None = None
+
+    def coordinates(self) -> np.ndarray:
+        """The numbers in which a refit steps: those of the law, then start and end where there are any."""
+        return np.append(effect_named(self.effect).coordinates(self.values), self.interval or ())
+
+    def at_coordinates(self, x: np.ndarray) -> NamedEffect:
+        """The effect with other coordinates."""
+        interval = None if self.interval is None else (float(x[-2]), float(x[-1]))
+        own = x if interval is None else x[:-2]
+        return replace(self, values=effect_named(self.effect).from_coordinates(own), interval=interval)
+
+    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of the coordinates."""
+        lower, upper = effect_named(self.effect).coordinate_bounds()
+        n_edges = len(self.interval or ())
+        return np.append(lower, np.full(n_edges, -np.inf)), np.append(upper, np.full(n_edges, np.inf))
+
+    def parameters(self) -> dict[str, float]:
+        """Values by name, with t0 and t1 [s] where the effect lasts for a while."""
+        edges = {} if self.interval is None else dict(zip(EDGES, map(float, self.interval), strict=True))
+        return {**self.values, **edges}
 
     def added(self, motion: Motion) -> np.ndarray:
         """Torque that the effect adds along a motion, shape (n, dof)."""
+        if self.recording is not None and self.recording != motion.recording:
+            return np.zeros_like(motion.load)
         law = effect_named(self.effect)
         torque = law.torque(motion, self.joint, self.values)
         if torque.ndim == 1:
@@ -53,9 +79,15 @@ class NamedEffect:
             full[:, self.joint] = torque
             torque = full
         if self.interval is not None:
-            inside = (motion.time >= self.interval[0]) & (motion.time <= self.interval[1])
-            torque = torque * inside[:, None]
+            torque = torque * _inside(motion.time, self.interval)[:, None]
         return torque
+
+
+def _inside(time: np.ndarray, interval: tuple[float, float]) -> np.ndarray:
+    """One from start to end, shape (n,), and zero one sample further out: an edge with a slope can be fitted."""
+    step = float(np.median(np.diff(time))) if time.size > 1 else 1.0
+    begun, ended = ((time - edge) / step for edge in interval)
+    return np.clip(begun + 1.0, 0.0, 1.0) * np.clip(1.0 - ended, 0.0, 1.0)
 
 
 def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
@@ -122,7 +154,7 @@ class CorrectedModel:
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque of samples that stand for themselves, shape (n, dof); delays and memory need `torque_along`."""
         time = UNORDERED * np.arange(len(q))
-        ordered = [e for e in self.effects if effect_named(e.effect).instantaneous]
+        ordered = [e for e in self.effects if effect_named(e.effect).instantaneous and e.interval is None]
         return torque_with(self._motion(time, q, v, a, self.nominal.inverse_dynamics(q, v, a)), ordered)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
@@ -181,7 +213,7 @@ class CorrectedModel:
             load = nominal.inverse_dynamics(q, v, a) - nominal.residual_torque(q, v, a)
         else:
             load = part(q, v, a)
-        bodies = [e for e in self.effects if effect_named(e.effect).stage == "body"]
+        bodies = [e for e in self.effects if effect_named(e.effect).stage == "body" and e.interval is None]
         return torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
 
     def _motion(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory, load: Trajectory) -> Motion:
@@ -207,7 +239,7 @@ def changed_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> np.ndarray:
     parameters = nominal.inertial_parameters().copy()
     for effect in effects:
         law: Any = effect_named(effect.effect)
-        if law.name in ("payload", "link_inertia"):
+        if law.name in ("payload", "link_inertia") and effect.interval is None:
             parameters[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
     return parameters
 
@@ -225,6 +257,6 @@ def apply_to_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> Any:
     robot = nominal
     for effect in effects:
         law: Any = effect_named(effect.effect)
-        if law.name == "gravity_tilt":
+        if law.name == "gravity_tilt" and effect.interval is None:
             robot = robot.with_gravity(law.gravity_of(robot.gravity, effect.values))
     return robot.with_inertial_parameters(changed_bodies(nominal, effects))

@@ -38,6 +38,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "held": None if model.held is None else [float(s) for s in model.held],
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
+            | ({} if e.recording is None else {"recording": e.recording})
             for e in model.effects
         ],
     }
@@ -125,8 +126,14 @@ def _effect(entry: dict[str, Any], n_dof: int) -> NamedEffect:
     values = {p.name: float(entry["values"][p.name]) for p in law.parameters}
     if not all(map(math.isfinite, values.values())):
         raise ValueError(f"{law.name} has a parameter that is not finite")
-    interval = entry.get("interval")
-    return NamedEffect(law.name, joint, values, None if interval is None else (float(interval[0]), float(interval[1])))
+    interval, recording = entry.get("interval"), entry.get("recording")
+    return NamedEffect(
+        law.name,
+        joint,
+        values,
+        None if interval is None else (float(interval[0]), float(interval[1])),
+        None if recording is None else int(recording),
+    )
 
 
 def _checksum(path: Path) -> str:

@@ -83,6 +83,15 @@ def tip_jacobian(model: pin.Model, frame: int, q: np.ndarray) -> np.ndarray:
     return out
 
 
+def orientation(model: pin.Model, joint: int, q: np.ndarray) -> np.ndarray:
+    """Axes of the frame behind a joint as columns in the axes of the base, shape (n, 3, 3)."""
+    data, place, out = model.createData(), pin.forwardKinematics, np.empty((len(q), 3, 3))
+    for i in range(len(q)):
+        place(model, data, q[i])
+        out[i] = data.oMi[joint].rotation
+    return out
+
+
 def energy(compute: Callable, model: pin.Model, *motion: np.ndarray) -> np.ndarray:
     """An energy by the given Pinocchio call, shape (n,)."""
     data = model.createData()

@@ -163,6 +163,10 @@ class Robot:
         frame = self._tip_frame() if joint == -1 else self._joint_frame(joint)
         return -batches.tip_jacobian(self._model, frame, *self._batch(q=q)).transpose(0, 2, 1)
 
+    def orientation(self, q: Trajectory, joint: int = -1) -> np.ndarray:
+        """Axes of a joint's frame as columns in the axes of the base, shape (n, 3, 3)."""
+        return batches.orientation(self._model, self._joint(joint) + 1, *self._batch(q=q))
+
     def skeleton(self, q: JointVector) -> np.ndarray:
         """Points to draw the arm in one pose: base, origin of each joint, tip; shape (dof + 2, 3), [m]."""
         data = self._placed(q)

@@ -1,0 +1,76 @@
+"""What happens for a while only, as parts of a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lagnet.diagnosis.passing import Passing
+from lagnet.diagnosis.spells import Spell
+from lagnet.diagnosis.verdict import EffectEvidence, EffectFound, NamedParameter
+from lagnet.diagnosis.wording import explain_passing
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected import EDGES
+from lagnet.recordings.recording import Recording
+
+if TYPE_CHECKING:
+    from lagnet.diagnosis.diagnose import Inquiry
+
+
+def passing_effects(inquiry: Inquiry, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
+    """The named effects that act on an interval of one fitted recording."""
+    return tuple(_effect(p, _name(fit, p.effect.recording or 0)) for p in inquiry.passing)
+
+
+def _effect(passing: Passing, recording: str) -> EffectFound:
+    effect, fit = passing.effect, passing.fit
+    law = effect_named(effect.effect)
+    units = {p.name: p.unit for p in law.parameters} | dict.fromkeys(EDGES, "s")
+    parameters = tuple(
+        NamedParameter(n, float(x), units[n], passing.intervals[n]) for n, x in effect.parameters().items()
+    )
+    evidence = EffectEvidence(fit.without, fit.with_it, passing.share, fit.rival, fit.odds)
+    interval = effect.interval or (0.0, 0.0)
+    words = explain_passing(law, interval, recording, parameters, fit.tied, evidence)
+    status = "tied" if fit.tied else "named"
+    return EffectFound(law.name, None, status, fit.tied, parameters, evidence, words, interval, recording)
+
+
+def spell_warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    """A line on every interval that has no name."""
+    return tuple(_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in inquiry.spells)
+
+
+def _name(recordings: Sequence[Recording], index: int, held_out: bool = False) -> str:
+    return recordings[index].path or f"{'held-out ' if held_out else ''}recording {index + 1}"
+
+
+def _warning(spell: Spell, recording: str) -> str:
+    left_out = (
+        "names were judged without it" if spell.held_out else "it has no name, and all else was fitted without it"
+    )
+    return (
+        f"{recording}: from {spell.start:.4g} s to {spell.end:.4g} s something acts on the arm that is absent from the "
+        f"rest of the recordings, such as a contact or a load; {left_out}"
+    )
+
+
+def spells_in_fit(inquiry: Inquiry) -> tuple[tuple[int, float, float], ...]:
+    """Recording, start and end of all that happens for a while in the fitted recordings."""
+    named = [(p.effect.recording or 0, *(p.effect.interval or (0.0, 0.0))) for p in inquiry.passing]
+    return (*named, *((s.recording, s.start, s.end) for s in inquiry.spells if not s.held_out))
+
+
+def in_spells(inquiry: Inquiry, rest: np.ndarray) -> float:
+    """Share of a joint's held-out residual power, shape (n,), that lies in intervals without a name."""
+    held = [s for s in inquiry.spells if s.held_out]
+    inside = [
+        np.any([(p.recording == s.recording) & (t >= s.start) & (t <= s.end) for s in held], axis=0)
+        for p in inquiry.problem.holdout
+        for t in (p.time[p.keep],)
+        if held
+    ]
+    power = rest**2
+    return float(power[np.concatenate(inside)].sum() / max(power.sum(), 1e-300)) if inside else 0.0
