@@ -235,6 +235,21 @@ class Body:
             pybullet.calculateInverseDynamics(self.id, self._in(q), self._in(v), zero, physicsClientId=self.client)
         )
 
+    def link_of(self, joint: int) -> int:
+        """The engine's index of the link behind a joint of the model."""
+        return self._index[self._order[joint]]
+
+    def point(self, link: int, at: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Place (3,) in the world of a point of a link's frame, and its Jacobian (3, dof), in the present state."""
+        c = self.client
+        pose = pybullet.getLinkState(self.id, link, computeForwardKinematics=True, physicsClientId=c)
+        place = np.array(pose[4]) + Rotation.from_quat(pose[5]).apply(at)
+        local = Rotation.from_quat(pose[3]).inv().apply(at)  # from the frame's origin, along the principal axes
+        zero = [0.0] * len(self._index)
+        J, _ = pybullet.calculateJacobian(self.id, link, local.tolist(), self._in(q), zero, zero, physicsClientId=c)
+        J = np.array(J)
+        return place, J if self._same else J[:, self._order]
+
     def push(self, torque: np.ndarray) -> None:
         """Apply joint torques and let one step of forward dynamics pass."""
         mode = pybullet.TORQUE_CONTROL

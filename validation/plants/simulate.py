@@ -9,6 +9,7 @@ import numpy as np
 
 from validation.plants.body import Body, BodySettings, Payload, joint_limits, joint_names
 from validation.plants.drive import Drive, DrySurface
+from validation.plants.events import Event, EventfulBody, event_of
 from validation.plants.motions import MotionSettings, Reference, reference
 from validation.plants.sensors import Sensors
 from validation.plants.sizes import scale_of
@@ -20,11 +21,12 @@ HOLDOUT_SHAPE = "fourier"
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """The parts of the true arm that a spec asks for."""
+    """The parts of the true arm that a spec asks for; `events` holds what happens in which recording."""
 
     body: BodySettings
     drive: Drive
     sensors: Sensors
+    events: tuple[tuple[int, Event], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,9 @@ def build(spec: PlantSpec) -> Truth:
         Sensors.ideal(len(names), noise=spec.noise, encoder_bits=spec.encoder_bits, velocity=spec.velocity),
     )
     for hidden in spec.hidden:
+        if event := event_of(hidden):
+            truth = replace(truth, events=(*truth.events, (int(hidden.values["recording"]), event)))
+            continue
         truth = _with(truth, hidden, -1 if hidden.joint is None else names.index(hidden.joint))
     return truth
 
@@ -87,13 +92,15 @@ def _with(truth: Truth, hidden: Hidden, j: int) -> Truth:
             sensors = replace(sensors, delay=_set(sensors.delay, j, x["T"]))
         case other:
             raise ValueError(f"no plant physics for {other}")
-    return Truth(body, drive, sensors)
+    return replace(truth, body=body, drive=drive, sensors=sensors)
 
 
-def run(truth: Truth, robot: str, wanted: Reference) -> Run:
-    """Track a reference by computed torque of the nominal bodies."""
+def run(truth: Truth, robot: str, wanted: Reference, recording: int = -1) -> Run:
+    """Track a reference by computed torque of the nominal bodies, with the events of one recording."""
     step = float(wanted.time[1] - wanted.time[0])
-    nominal, plant = Body(robot, step=step), Body(robot, truth.body, step=step)
+    nominal = Body(robot, step=step)
+    happens = [event for index, event in truth.events if index == recording]
+    plant = EventfulBody(robot, truth.body, step, happens) if happens else Body(robot, truth.body, step=step)
     omega = _bandwidth(robot, step)
     n, dof = wanted.q.shape
     seen = np.empty((4, n, dof))
@@ -132,7 +139,7 @@ def simulate_plant(spec: PlantSpec, folder: Path) -> np.ndarray:
     for index, (name, shape) in enumerate(zip(names, (*FIT_SHAPES, HOLDOUT_SHAPE), strict=True)):
         rng = np.random.default_rng([spec.seed, index])
         settings = MotionSettings(spec.duration, spec.step_rate, speed_share=spec.speed_share)
-        true_run = run(truth, spec.robot, reference(shape, joint_limits(spec.robot), settings, rng))
+        true_run = run(truth, spec.robot, reference(shape, joint_limits(spec.robot), settings, rng), index)
         every = round(spec.step_rate / spec.rate)
         columns = truth.sensors.record(true_run.q, true_run.v, true_run.tau, true_run.step, every, rng)
         write_csv(folder / f"{name}.csv", columns)
