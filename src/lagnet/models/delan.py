@@ -109,7 +109,7 @@ def make_delan(key: Array, features: JointFeatures, scales: Scales, settings: De
         height=make_chain_network(keys[3], features.owner, n, potential_rank),
         start=jax.random.normal(keys[4], (potential_rank,)),
         weights=jax.random.normal(keys[5], (n, potential_rank)) / np.sqrt(potential_rank),
-        features=features,
+        features=features.on_circle,
         scales=scales,
         settings=settings,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax.numpy as jnp
 import numpy as np
@@ -36,6 +36,18 @@ class JointFeatures:
     def owner(self) -> tuple[int, ...]:
         """The joint that each feature comes from."""
         return tuple(_rows(self.joint_types))
+
+    @property
+    def on_circle(self) -> JointFeatures:
+        """The same with the sine and cosine of every turning joint as they are, never above 1.
+
+        For networks that multiply features of many joints: a product of standardised features has a tail that grows
+        with every joint, while the torque of rigid bodies is made of products of plain sines and cosines.
+        """
+        turns = [self.joint_types[j] != "prismatic" for j in self.owner]
+        offset = tuple(0.0 if turn else x for turn, x in zip(turns, self.offset, strict=True))
+        scale = tuple(1.0 if turn else x for turn, x in zip(turns, self.scale, strict=True))
+        return replace(self, offset=offset, scale=scale)
 
     def __call__(self, q: Array) -> Array:
         """Features of one position (dof,), shape (n_features,)."""
