@@ -38,7 +38,7 @@ def damped_motion(robot: Robot, motion: MotionSettings, seed: int, samples: int 
     wanted = random_motion(robot, replace(motion, rate=damping.rate), seed)
     kept = []
     with PyBulletArm(robot, 1.0 / damping.rate) as arm:
-        _damp(arm, damping)
+        arm.damp(damping.linear, damping.angular, damping.joint)
         for part in wanted.parts():
             kept.append(_follow(arm, part, damping))
             if samples is not None and sum(len(k[0]) for k in kept) >= samples:
@@ -48,13 +48,6 @@ def damped_motion(robot: Robot, motion: MotionSettings, seed: int, samples: int 
     time = np.arange(len(q)) * damping.keep / damping.rate
     names = tuple(map(str, range(len(kept))))
     return Recording(time=time, q=q, v=v, a=a, tau=tau, joints=robot.joints, trajectory=label, trajectory_names=names)
-
-
-def _damp(arm: PyBulletArm, damping: Damping) -> None:
-    engine = arm._engine
-    lossy = {"linearDamping": damping.linear, "angularDamping": damping.angular, "jointDamping": damping.joint}
-    for link in range(-1, engine.getNumJoints(arm._arm, arm._world)):
-        engine.changeDynamics(arm._arm, link, physicsClientId=arm._world, **lossy)
 
 
 def _follow(arm: PyBulletArm, wanted: Recording, damping: Damping) -> tuple[np.ndarray, ...]:

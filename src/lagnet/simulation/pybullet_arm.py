@@ -104,9 +104,9 @@ class PyBulletArm:
 
     def _settle(self, n_links: int, gravity: np.ndarray) -> None:
         engine = self._engine
-        free = {"linearDamping": 0, "angularDamping": 0, "jointDamping": 0, "maxJointVelocity": 1e3}
         for link in range(-1, n_links):
-            engine.changeDynamics(self._arm, link, physicsClientId=self._world, **free)
+            engine.changeDynamics(self._arm, link, maxJointVelocity=1e3, physicsClientId=self._world)
+        self.damp(0.0, 0.0, 0.0)
         still = [0.0] * len(self._ids)  # the default motors hold every joint; without force they let go
         mode = engine.VELOCITY_CONTROL
         engine.setJointMotorControlArray(self._arm, self._ids, mode, forces=still, physicsClientId=self._world)
@@ -128,6 +128,17 @@ class PyBulletArm:
         """Positions [rad], and speeds half a step before them [rad/s]."""
         states = self._engine.getJointStates(self._arm, self._ids, physicsClientId=self._world)
         return self._read([s[0] for s in states]), self._read([s[1] for s in states])
+
+    def damp(self, linear: float, angular: float, joint: float) -> None:
+        """Let motion die away as the engine has it; seen by `advance` alone, not by `mass_matrix` or `bias_torque`.
+
+        Args:
+            linear, angular: rates at which every body loses translation and rotation [1/s].
+            joint: torque per speed of every joint [N m s/rad].
+        """
+        lost = {"linearDamping": linear, "angularDamping": angular, "jointDamping": joint}
+        for link in range(-1, self._engine.getNumJoints(self._arm, self._world)):
+            self._engine.changeDynamics(self._arm, link, physicsClientId=self._world, **lost)
 
     def mass_matrix(self, q: JointVector) -> np.ndarray:
         """Joint-space inertia [kg m²], shape (dof, dof)."""
