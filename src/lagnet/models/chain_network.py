@@ -11,6 +11,7 @@ from __future__ import annotations
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array
 
 
@@ -19,7 +20,7 @@ class ChainNetwork(eqx.Module):
 
     Args:
         transfers: one matrix a joint, first the constant part, then one part a feature.
-        owner: the joint that each feature comes from.
+        owner: the joint that each feature comes from, ascending.
     """
 
     transfers: tuple[Array, ...]
@@ -33,10 +34,12 @@ class ChainNetwork(eqx.Module):
             start: state before joint 0, shape (rank,).
             entries: per joint, what is added to the state there, shape (rank,) or None.
         """
-        states, state = [], start
+        states, state, one = [], start, jnp.ones_like(start, shape=1)
+        first = np.searchsorted(self.owner, np.arange(len(self.transfers) + 1))
         for joint, (transfer, entry) in enumerate(zip(self.transfers, entries, strict=True)):
-            parts = [state, *(features[f] * state for f, j in enumerate(self.owner) if j == joint)]
-            state = transfer @ jnp.concatenate(parts)
+            # One outer product instead of a product a feature: half the operations to differentiate and to compile.
+            own = jnp.concatenate([one, features[first[joint] : first[joint + 1]]])
+            state = transfer @ jnp.outer(own, state).ravel()
             state = state if entry is None else state + entry
             states.append(state)
         return states

@@ -8,10 +8,14 @@ from collections.abc import Callable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array
 
 from lagnet.models.lagrangian import Matrix, Vector
 
-NEWTON_STEPS = 8  # the torque is linear in a but for ε, which is small or smooth: convergence is quadratic
+NEWTON_STEPS = (
+    8  # at most: the torque is linear in a but for ε, which is small or smooth, so that convergence is quadratic
+)
+SETTLED = 1e-10  # of the acceleration: after so small a step the error is its square, below rounding
 
 
 class AbstractDynamics(eqx.Module):
@@ -50,10 +54,18 @@ class AbstractDynamics(eqx.Module):
 
 
 def solve_for_acceleration(torque: Callable[[Vector], Vector], tau: Vector) -> Vector:
-    """The a at which torque(a) = tau, by Newton steps from rest."""
+    """The a at which torque(a) = tau, by Newton steps from rest until a step is too small to matter."""
 
-    def step(a: Vector, _: None) -> tuple[Vector, None]:
-        slope = jax.jacfwd(torque)(a)
-        return a + jnp.linalg.solve(slope, tau - torque(a)), None
+    def step(state: tuple[Vector, Vector, Array]) -> tuple[Vector, Vector, Array]:
+        a, _, count = state
+        reached, along = jax.linearize(torque, a)
+        slope = jax.vmap(along, out_axes=1)(jnp.eye(a.size, dtype=a.dtype))
+        change = jnp.linalg.solve(slope, tau - reached)
+        return a + change, change, count + 1
 
-    return jax.lax.scan(step, jnp.zeros_like(tau), None, length=NEWTON_STEPS)[0]
+    def unfinished(state: tuple[Vector, Vector, Array]) -> Array:
+        a, change, count = state
+        return (count < NEWTON_STEPS) & (jnp.abs(change).max() > SETTLED * jnp.abs(a).max())
+
+    begin = jnp.zeros_like(tau), jnp.full_like(tau, jnp.inf), jnp.array(0)
+    return jax.lax.while_loop(unfinished, step, begin)[0]

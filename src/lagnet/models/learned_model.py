@@ -20,7 +20,7 @@ from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.types import MassMatrix, Samples, Trajectory
 
 CHUNK = 4096  # samples computed at a time: the working set stays in cache, memory stays bounded
-BUCKETS = (1, 32, 512, CHUNK)  # batches are padded to one of these, so that few shapes are ever compiled
+BUCKETS = (1, 8, 32, 512, CHUNK)  # batches are padded to one of these, so that few shapes are ever compiled
 
 
 @final
@@ -33,6 +33,8 @@ class LearnedModel:
         training: what the training says about itself (seed, data checksums, versions, errors); plain values.
         source: folder it was read from; sha256: checksum of the weights there.
     """
+
+    compiles = True  # a batch of a new size may take a second the first time
 
     def __init__(
         self,

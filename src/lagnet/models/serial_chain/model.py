@@ -40,6 +40,8 @@ class SerialChain:
         learned: the same model as any learned one, which computes and saves it.
     """
 
+    compiles = LearnedModel.compiles
+
     def __init__(self, learned: LearnedModel):
         if not isinstance(learned.dynamics, SerialChainDynamics):
             raise ModelError(f"a model of kind {learned.model_kind} is not a serial chain")
