@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lagnet.errors import LagnetError
+
+if TYPE_CHECKING:
+    from lagnet.diagnosis.diagnose import Diagnosis
 
 
 def command(
@@ -34,6 +37,9 @@ def command(
     bandwidth: Annotated[
         float | None, typer.Option(help="Low-pass on torques [Hz]; else chosen from the data.")
     ] = None,
+    suggest_motion: Annotated[
+        bool, typer.Option("--suggest-motion", help="Write a motion to record next, which breaks ties: see docs.")
+    ] = False,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Say where recordings and robot differ, and name the physics that was left out."""
@@ -68,4 +74,19 @@ def command(
             if not result.verdict.found
             else "The mismatch found fits no known physics."
         )
+    if suggest_motion:
+        _suggest(result, out, seed)
     say(f"report: {out / 'report.html'}")
+
+
+def _suggest(result: Diagnosis, out: Path, seed: int) -> None:
+    """Searches the motion to record next and writes it beside the verdict."""
+    from lagnet.cli.console import say
+    from lagnet.diagnosis.suggested_motion import suggest_motion
+    from lagnet.diagnosis.suggestion_files import MOTION, words_of, write_suggestion
+
+    say("searching for the motion that settles most of what is open")
+    suggested = suggest_motion(result, seed)
+    write_suggestion(suggested, out)
+    for line in words_of(suggested, str(out / MOTION)):
+        say(line)

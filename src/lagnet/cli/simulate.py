@@ -24,11 +24,16 @@ def command(
     encoder_bits: Annotated[int, typer.Option(help="Encoder steps of a turn as a power of two; 0 for none.")] = 20,
     clock_jitter: Annotated[float, typer.Option(help="Jitter of the sampling clock [s].")] = 0.0,
     velocity: Annotated[bool, typer.Option(help="Record speeds too.")] = False,
+    motion: Annotated[
+        Path | None, typer.Option(help="Recording whose motion is followed, such as one that diagnose suggests.")
+    ] = None,
 ) -> None:
     """Move a robot under torque control, with known effects added, and write recordings; the truth is kept apart."""
     from lagnet.cli.console import say
+    from lagnet.recordings.load import load_recording
     from lagnet.rigid_body.robot import load_description
     from lagnet.simulation.effects_file import read_effects
+    from lagnet.simulation.follow import follow
     from lagnet.simulation.motions import MotionSettings
     from lagnet.simulation.sensors import SensorSettings
     from lagnet.simulation.simulate import SimulationSettings, truth
@@ -45,7 +50,13 @@ def command(
         motion=MotionSettings(duration=duration, rate=step_rate),
         sensors=SensorSettings(rate, torque_noise, encoder_bits, velocity, clock_jitter=clock_jitter),
     )
-    recordings = simulated(model, injected, settings)
-    for path in write_simulation(out, truth(model, injected, settings), recordings):
+    known = truth(model, injected, settings)
+    if motion is None:
+        recordings = simulated(model, injected, settings)
+    else:
+        given = load_recording(motion, robot=model)
+        recordings = (follow(model, injected, part.time, part.q, settings) for part in given.parts())
+        known |= {"motion": {"path": str(motion), "sha256": given.sha256}}
+    for path in write_simulation(out, known, recordings):
         say(f"wrote {path}")
     say(f"the injected effects stand in {out / TRUTH}")

@@ -12,11 +12,13 @@ from lagnet.diagnosis.adequacy import withdraw
 from lagnet.diagnosis.arm_search import Found, search_arm
 from lagnet.diagnosis.compose import compose_verdict
 from lagnet.diagnosis.curves import collect_evidence
+from lagnet.diagnosis.equal_in_motion import tie_equals
 from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.grams import collect_grams
 from lagnet.diagnosis.library import Library, build_library
+from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
 from lagnet.diagnosis.passing import Passing, settle_passing
 from lagnet.diagnosis.problem import Problem, pose_problem
@@ -48,6 +50,7 @@ class Diagnosis:
         evidence: the curves behind the verdict, for reports.
         fit_recordings, holdout_recordings: what was used for what.
         conditioned_holdout: the held-out recordings on their even clock.
+        standing: what the next recording is planned from.
     """
 
     verdict: Verdict
@@ -56,6 +59,7 @@ class Diagnosis:
     fit_recordings: tuple[Recording, ...]
     holdout_recordings: tuple[Recording, ...]
     conditioned_holdout: Conditioned
+    standing: Standing
 
     @property
     def effects(self) -> tuple[EffectFound, ...]:
@@ -88,6 +92,11 @@ class Inquiry:
     seed: int
     passing: tuple[Passing, ...] = ()
     spells: tuple[Spell, ...] = ()
+
+    @property
+    def standing(self) -> Standing:
+        """What the next recording is planned from."""
+        return Standing(self.problem, self.fit, self.library, self.found, self.contests, self.refit.effects)
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -129,7 +138,7 @@ def diagnose(
     inquiry = settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
     corrected = CorrectedModel(robot, inquiry.effects, inquiry.problem.slow, inquiry.problem.held)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
-    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen)
+    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen, inquiry.standing)
 
 
 def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.ndarray, seed: int) -> Inquiry:
@@ -152,6 +161,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
     contests = contests_with_unjudged(problem, library, found, hold_contests(bench, found))
+    contests = tie_equals(library, contests, fitted.effects)
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
     return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed)
 

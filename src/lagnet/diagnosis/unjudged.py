@@ -9,12 +9,16 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.evidence_of import error_of
-from lagnet.diagnosis.fitting import Workbench, fit_selection
+from lagnet.diagnosis.fitting import Fit, Workbench, assemble, solve
 from lagnet.diagnosis.library import Hypothesis, Library
 from lagnet.diagnosis.narrowed import narrow
 from lagnet.diagnosis.problem import Problem
-from lagnet.diagnosis.rivals import TIE, Contest, hold_contests
+from lagnet.diagnosis.rivals import SAME, TIE, Contest, hold_contests
+from lagnet.diagnosis.search import LEAST_OF_ALL
 from lagnet.effects.catalogue import effect_named
+
+FEW = 20  # samples of a joint below which they are no evidence
+LEAST_RIDGE = 1e-12  # of a column's power: columns of one body are almost the same while little moves
 
 
 def contests_with_unjudged(
@@ -56,20 +60,28 @@ def far_equals(bench: Workbench, found: Found, index: int) -> set[str]:
     columns that the motion does not excite.
     """
     hypotheses = bench.library.hypotheses
+    shown = bench.samples >= FEW  # of joints that rest, a few stray samples are no evidence
+    bench = replace(bench, total=tuple(t * s for t, s in zip(bench.total, shown, strict=True)))
     sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
-    least = np.maximum(1e-3 * found.scales.noise_power, 1e-300)
     pieces = bench.samples / found.scales.memory
+    floor = np.maximum(1e-3 * found.scales.noise_power, 1e-300)
     rest = [i for i in found.selection if i != index]
-    here = np.maximum(_error(bench, found.selection, sigma), least)
+    here = _error(bench, found.selection, sigma)
+    same = np.maximum(SAME * here, LEAST_OF_ALL * np.array([t[-1, -1] for t in bench.total]))
     equal = set()
     for k in bench.library.reaching:
         if k not in found.far and hypotheses[k].joint == hypotheses[index].joint:
-            there = np.maximum(_error(bench, (*rest, k), sigma), least)
-            if 0.5 * np.sum(pieces * np.log(there / here)) < TIE * np.log(10.0):
+            there = _error(bench, (*rest, k), sigma)
+            gap = 0.5 * np.sum(pieces * np.log(np.maximum(there, floor) / np.maximum(here, floor)))
+            if gap < TIE * np.log(10.0) or np.all(there - here <= same):
                 equal.add(hypotheses[k].effect)
     return equal
 
 
 def _error(bench: Workbench, selection: Sequence[int], sigma: np.ndarray) -> np.ndarray:
     """Squared error of a selection on the samples that it is fitted to, shape (dof,)."""
-    return error_of(fit_selection(bench, selection, sigma, folds=False), bench)
+    starts = np.concatenate([[0], np.cumsum([bench.library.widths[i] for i in selection])]).astype(int)
+    where = {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(selection)}
+    gram, moment = assemble(bench, selection, where, sigma, [t[None] for t in bench.total])
+    theta = solve(gram, moment, ridge=LEAST_RIDGE)[0]
+    return error_of(Fit(tuple(selection), {i: theta[rows] for i, rows in where.items()}, np.zeros(0)), bench)

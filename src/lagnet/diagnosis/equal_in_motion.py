@@ -1,0 +1,43 @@
+"""Names that are one and the same law while a joint moves: what tells them apart is not in any motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from lagnet.diagnosis.library import Library
+from lagnet.diagnosis.rivals import Contest
+from lagnet.models.corrected import NamedEffect
+
+UNEVEN, EVEN, SHIFT = "asymmetric_friction", "coulomb_friction", "torque_offset"
+
+
+def equal_in_motion(first: Iterable[str], second: Iterable[str]) -> bool:
+    """Whether two explanations, given by their names, are the same law: Fc⁺ and Fc⁻ are Fc + b and Fc − b."""
+    return {frozenset(first), frozenset(second)} == {frozenset({UNEVEN}), frozenset({EVEN, SHIFT})}
+
+
+def tie_equals(library: Library, contests: Sequence[Contest], effects: Sequence[NamedEffect]) -> tuple[Contest, ...]:
+    """The contests with ties between these names, whatever the odds: those are of how friction acts at standstill.
+
+    An offset larger than the friction has no equal: friction that pushes does not exist.
+
+    Args:
+        library: of the hypotheses.
+        contests: one for each named effect.
+        effects: the named effects, refitted.
+    """
+    values = {(e.effect, e.joint): e.values for e in effects}
+
+    def rivals(place: tuple[str, int | None]) -> set[str]:
+        name, joint = place
+        friction, offset = values.get((EVEN, joint)), values.get((SHIFT, joint))
+        if name == UNEVEN:
+            return {EVEN, SHIFT}
+        if name in (EVEN, SHIFT) and friction and offset and abs(offset["b"]) <= friction["Fc"]:
+            return {UNEVEN}
+        return set()
+
+    return tuple(
+        replace(c, tied=tuple(sorted({*c.tied, *rivals(library.hypotheses[c.index].place)}))) for c in contests
+    )
