@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from lagnet.decomposition.decompose import decompose as decompose
     from lagnet.diagnosis.diagnose import Diagnosis as Diagnosis
     from lagnet.diagnosis.diagnose import diagnose as diagnose
+    from lagnet.diagnosis.suggested_motion import suggest_motion as suggest_motion
     from lagnet.diagnosis.writing import write_diagnosis as write_diagnosis
     from lagnet.effects.catalogue import CATALOGUE as CATALOGUE
     from lagnet.errors import LagnetError as LagnetError
@@ -56,6 +57,7 @@ _PUBLIC = {
     "load_model": "lagnet.models.loading:load_any",
     "load_recording": "lagnet.recordings.load:load_recording",
     "load_robot": "lagnet.models.loading:load_any",
+    "suggest_motion": "lagnet.diagnosis.suggested_motion:suggest_motion",
     "train": "lagnet.training.train:train",
     "write_diagnosis": "lagnet.diagnosis.writing:write_diagnosis",
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -55,7 +56,8 @@ def command(
         recordings = simulated(model, injected, settings)
     else:
         given = load_recording(motion, robot=model)
-        recordings = (follow(model, injected, part.time, part.q, settings) for part in given.parts())
+        parts = enumerate(given.parts())
+        recordings = (follow(model, injected, p.time, p.q, replace(settings, seed=seed + n)) for n, p in parts)
         known |= {"motion": {"path": str(motion), "sha256": given.sha256}}
     for path in write_simulation(out, known, recordings):
         say(f"wrote {path}")
