@@ -66,7 +66,7 @@ def _resolvable(plan: Plan, run: TrueRun) -> TrueRun:
     sections = butter(4, SEEN_BEHIND_A_GEAR / (plan.step_rate / 2), output="sos")
 
     def smooth(signal: np.ndarray) -> np.ndarray:
-        return sosfiltfilt(sections, signal, axis=0)
+        return np.asarray(sosfiltfilt(sections, signal, axis=0))
 
     own = {number: smooth(cost) for number, cost in run.own.items()}
     return replace(run, q=smooth(run.q), v=smooth(run.v), a=smooth(run.a), tau=smooth(run.tau), own=own)

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from validation.plants.body import arm_joints, joint_names
+from validation.plants.catalogue.calibrate import calibrated
 from validation.plants.catalogue.listed import DRY, GEARS, LISTED
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.scale import RIGID_RATE, OwnScale, own_scale, wanted_motions
@@ -175,9 +176,13 @@ def draw_hidden(
         if values is None:
             continue
         got = _clipped_size(kind, scale, j, wanted, values)
-        if got >= 0.99 * least:
-            name = None if kind in WHOLE_ARM else joint_names(plan.robot)[j]
-            return Hidden(kind, name, {k: float(x) for k, x in values.items()}, got)
+        if got < 0.99 * least:
+            continue
+        name = None if kind in WHOLE_ARM else joint_names(plan.robot)[j]
+        hidden = Hidden(kind, name, {k: float(x) for k, x in values.items()}, got)
+        sized = calibrated(plan, hidden, wanted) if kind in GEARS else hidden
+        if sized is not None and sized.size >= 0.99 * least:
+            return sized
     return None
 
 

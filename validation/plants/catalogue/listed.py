@@ -12,7 +12,9 @@ from validation.plants.draw import FIRST_SET
 Values = dict[str, float]
 Draw = Callable[[OwnScale, int, float, np.random.Generator], Values | None]
 LARGEST_SHIFT = 0.12  # [rad] of encoder errors and bends that a working arm may have
+SLOWEST_SWING = 4.0  # [Hz] of a link on its spring: softer arms cannot follow the motions
 LARGEST_GAP = 0.05  # [rad], half the gap
+FIRST_GAP = 0.004  # [rad], half of it, from which the size is calibrated
 FREE_TORQUE = 0.15  # share of the time on the rarer flank below which a gap is hardly ever crossed
 
 
@@ -51,17 +53,17 @@ def link_inertia(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> 
 def elasticity(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> Values | None:
     """A stiffness that bends so far that torques change by the size."""
     bend = size / max(s.bend[j], 1e-9)
-    if bend > LARGEST_SHIFT or s.mean_inertia[j] <= 0:
+    stiffness = s.torque[j] / bend
+    if bend > LARGEST_SHIFT or stiffness < s.mean_inertia[j] * (2 * np.pi * SLOWEST_SWING) ** 2:
         return None
-    return _second_mass(s, j, s.torque[j] / bend, rng)
+    return _second_mass(s, j, stiffness, rng)
 
 
 def backlash(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> Values | None:
-    """A gap of a size that changes torques by the size; flanks a fiftieth as soft as the gap is wide."""
-    half = size / max(s.shift[j], 1e-9)
-    if half > LARGEST_GAP or s.flips[j] < FREE_TORQUE:
+    """A gap, to be calibrated; flanks a fiftieth as soft as the gap is wide."""
+    if size / max(s.shift[j], 1e-9) > LARGEST_GAP or s.flips[j] < FREE_TORQUE:
         return None
-    return {"h": half} | _second_mass(s, j, 50 * s.torque[j] / half, rng)
+    return {"h": FIRST_GAP} | _second_mass(s, j, 50 * s.torque[j] / FIRST_GAP, rng)
 
 
 def _second_mass(s: OwnScale, j: int, stiffness: float, rng: np.random.Generator) -> Values:

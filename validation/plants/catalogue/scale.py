@@ -11,6 +11,7 @@ from validation.plants.body import BodySettings, Payload, arm_joints, joint_limi
 from validation.plants.motions import MotionSettings, Reference, reference
 from validation.plants.sizes import Scale
 
+LEAD = 0.5  # [s] before a recording starts, in which the arm and its gears settle
 SMALL = 1e-3  # rad, step of differences by the joint angle
 TINY_JOINT = 0.02  # of the largest torque of the arm: a joint below it is not where an effect is sized
 RIGID_RATE = 50.0  # [Hz] at which wanted motions are looked at for sizes
@@ -40,8 +41,8 @@ class OwnScale(Scale):
 def wanted_motions(
     robot: str, shapes: tuple[str, ...], seed: int, speed_share: float, duration: float, rate: float
 ) -> list[Reference]:
-    """The reference of every recording of a plant."""
-    settings = MotionSettings(duration, rate, speed_share=speed_share)
+    """The reference of every recording of a plant, and of the lead before it."""
+    settings = MotionSettings(duration + LEAD, rate, speed_share=speed_share)
     limits = joint_limits(robot)
     return [reference(s, limits, settings, np.random.default_rng([seed, i])) for i, s in enumerate(shapes)]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from validation.plants.catalogue.assemble import Parts, assemble
 from validation.plants.catalogue.costs import Costs, costs_of
 from validation.plants.catalogue.measure import record
 from validation.plants.catalogue.plan import Plan
-from validation.plants.catalogue.scale import wanted_motions
+from validation.plants.catalogue.scale import LEAD, wanted_motions
 from validation.plants.catalogue.witness import Witness, bear_witness
 from validation.plants.motions import Reference
 from validation.plants.simulate import write_csv
@@ -35,14 +36,19 @@ def simulate(plan: Plan, folder: Path) -> tuple[Witness, Costs]:
     wanted = wanted_motions(plan.robot, plan.shapes, plan.seed, plan.speed_share, plan.duration, plan.step_rate)
     costs: list[Costs] = []
     for index, (name, motion) in enumerate(zip(plan.recordings, wanted, strict=True)):
-        true_run = _run(plan, parts, nominal, motion)
+        true_run = run_plan(plan, parts, nominal, motion)
         rng = np.random.default_rng([plan.seed, index, 1])
         write_csv(folder / f"{name}.csv", record(plan, parts, true_run, rng))
         costs.append(costs_of(plan, parts, true_run, nominal))
     return bear_witness(plan, costs[:-1], nominal), costs[-1]
 
 
-def _run(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Reference) -> TrueRun:
+def run_plan(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Reference) -> TrueRun:
+    """Follow one motion, its lead left out.
+
+    Raises:
+        RuntimeError: the arm did not follow.
+    """
     step = 1 / plan.step_rate
     engine = Body(plan.robot, parts.body, step) if plan.engine == "pybullet" else None
     arm = Arm(
@@ -60,7 +66,13 @@ def _run(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Reference) 
         engine.close()
     if not np.all(np.isfinite(true_run.tau)) or np.abs(true_run.q - parts.angle_offset - motion.q).max() > 1.0:
         raise RuntimeError(f"{plan.name}: the closed loop was lost")
-    return true_run
+    return _after_lead(true_run, round(LEAD * plan.step_rate))
+
+
+def _after_lead(true_run: TrueRun, start: int) -> TrueRun:
+    own = {number: cost[start:] for number, cost in true_run.own.items()}
+    q, v, a, tau = (x[start:] for x in (true_run.q, true_run.v, true_run.a, true_run.tau))
+    return replace(true_run, q=q, v=v, a=a, tau=tau, own=own)
 
 
 def _bandwidth(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Reference) -> np.ndarray:
