@@ -41,6 +41,14 @@ class Signals:
     names: tuple[str, ...]
     table: np.ndarray
 
+    def of(self, name: str) -> np.ndarray:
+        """One signal by its name, shape (n,)."""
+        return self.table[:, self.names.index(name)]
+
+    def only(self, rows: np.ndarray) -> Signals:
+        """The signals of some samples."""
+        return Signals(self.names, self.table[rows])
+
 
 def signals_of(problem: Problem, pieces: tuple[Piece, ...]) -> Signals:
     """Positions, velocities, accelerations, load and the velocities a moment before."""

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lagnet._version import __version__
-from lagnet.diagnosis.ceiling import Ceiling, Signals, find_ceiling, signals_of
+from lagnet.diagnosis.leftover import ABOVE, power_of, stacked
 from lagnet.diagnosis.localisation import locate
 from lagnet.diagnosis.passing_words import in_spells, passing_effects, spell_warnings, spells_in_fit
-from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.rivals import Contest
 from lagnet.diagnosis.verdict import (
     Abstained,
@@ -26,7 +26,6 @@ from lagnet.diagnosis.verdict import (
 )
 from lagnet.diagnosis.wording import advice, explain
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected import torque_with
 from lagnet.recordings.recording import Recording
 
 if TYPE_CHECKING:
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is left is said to depend on time
-ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant
 
 
 def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
@@ -48,7 +46,6 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
         "acceleration_from": inquiry.fit.acceleration_from,
     }
     mismatch = tuple(_mismatch(inquiry, j) for j in range(problem.n_dof))
-    after = left_over(inquiry)
     return Verdict(
         lagnet_version=__version__,
         seed=inquiry.seed,
@@ -57,8 +54,8 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
         conditioning=conditioning,
         joints=mismatch,
         effects=effects,
-        unexplained=tuple(_unexplained(inquiry, after, j) for j in range(problem.n_dof)),
-        fit=tuple(_fit(inquiry, after, j) for j in range(problem.n_dof)),
+        unexplained=tuple(_unexplained(inquiry, j) for j in range(problem.n_dof)),
+        fit=tuple(_fit(inquiry, j) for j in range(problem.n_dof)),
         abstentions=_abstentions(inquiry),
         warnings=(*dict.fromkeys(w for r in (*fit, *held) for w in r.warnings), *spell_warnings(inquiry, fit, held)),
     )
@@ -92,14 +89,9 @@ def _recording(recording: Recording, role: str) -> dict[str, Any]:
     }
 
 
-def _stacked(problem: Problem, pieces: Sequence[Piece]) -> tuple[np.ndarray, np.ndarray]:
-    rest = np.concatenate([problem.residual(p) for p in pieces])
-    return rest, np.concatenate([p.counts for p in pieces])
-
-
 def _mismatch(inquiry: Inquiry, joint: int) -> JointMismatch:
     problem = inquiry.problem
-    rest, counts = _stacked(problem, problem.fit)
+    rest, counts = stacked(problem, problem.fit)
     residual = rest[:, joint] * counts[:, joint]
     rms = float(np.sqrt(np.sum(residual**2) / max(1, counts[:, joint].sum())))
     noise = float(inquiry.noise[joint])
@@ -143,63 +135,22 @@ def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence
     return EffectFound(law.name, joint, status, contest.tied, parameters, evidence, words)
 
 
-@dataclass(frozen=True, eq=False)
-class Leftover:
-    """What the refitted effects leave, on the samples that count.
-
-    Args:
-        fit, holdout: (residual, counts), each of shape (n, dof).
-        seen, unseen: what a flexible model may look at, on the same samples.
-    """
-
-    fit: tuple[np.ndarray, np.ndarray]
-    holdout: tuple[np.ndarray, np.ndarray]
-    seen: Signals
-    unseen: Signals
-
-
-def left_over(inquiry: Inquiry) -> Leftover:
-    """Residuals of the corrected model on fit and held-out samples."""
-    problem, parts = inquiry.problem, []
-    for pieces in (problem.fit, problem.holdout):
-        blind = [replace(p.motion(problem), recorded=None) for p in pieces]  # a prediction sees no recorded torque
-        predicted = [torque_with(m, inquiry.effects) for m in blind]
-        rest = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
-        parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
-    seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
-    return Leftover(parts[0], parts[1], seen, unseen)
-
-
-def _power(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
-    return float(np.sum((residual[:, joint] * counts[:, joint]) ** 2) / max(1, counts[:, joint].sum()))
-
-
-def _unexplained(inquiry: Inquiry, after: Leftover, joint: int) -> Unexplained:
-    problem = inquiry.problem
-    left = _power(*after.holdout, joint)
-    before = _power(*_stacked(problem, problem.holdout), joint)
-    noise = float(inquiry.noise[joint] ** 2)
-    above = bool(np.sqrt(left) > ABOVE * np.sqrt(noise))
-    ceiling = ceiling_of(inquiry, after, joint) if above else Ceiling(0.0, ())
-    share = float(np.clip(max(0.0, left - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if above else 0.0
-    depends_on = ceiling.depends_on
-    if above and "time" not in depends_on and in_spells(inquiry, after.holdout[0][:, joint]) > MOSTLY:
+def _unexplained(inquiry: Inquiry, joint: int) -> Unexplained:
+    problem, left = inquiry.problem, inquiry.leftovers[joint]
+    before, noise = power_of(*stacked(problem, problem.holdout), joint), float(inquiry.noise[joint] ** 2)
+    share = float(np.clip(max(0.0, left.power - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if left.above else 0.0
+    depends_on = left.ceiling.depends_on
+    if left.above and "time" not in depends_on and in_spells(inquiry, inquiry.after.holdout[0][:, joint]) > MOSTLY:
         depends_on = ("time", *depends_on)
-    return Unexplained(problem.joints[joint], above, share, depends_on)
+    formula = left.shape.formula if left.shape else None
+    return Unexplained(problem.joints[joint], left.above, share, depends_on, formula)
 
 
-def ceiling_of(inquiry: Inquiry, after: Leftover, joint: int) -> Ceiling:
-    """What boosted trees find in the residual after the named effects."""
-    (rest, counts), (test, test_counts) = after.fit, after.holdout
-    truth = test[:, joint] * test_counts[:, joint]
-    return find_ceiling(after.seen, rest[:, joint], counts[:, joint], after.unseen, truth, inquiry.seed)
-
-
-def _fit(inquiry: Inquiry, after: Leftover, joint: int) -> JointFit:
+def _fit(inquiry: Inquiry, joint: int) -> JointFit:
     problem = inquiry.problem
     torque = np.concatenate([problem.reduce(p, p.tau)[:, joint] for p in problem.holdout])
     variance = max(float(np.var(torque)), 1e-300)
-    nominal, named = _power(*_stacked(problem, problem.holdout), joint), _power(*after.holdout, joint)
+    nominal, named = power_of(*stacked(problem, problem.holdout), joint), inquiry.leftovers[joint].power
     floor = float(inquiry.noise[joint] ** 2) / variance
     return JointFit(problem.joints[joint], nominal / variance, named / variance, None, floor)
 

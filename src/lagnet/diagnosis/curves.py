@@ -62,7 +62,7 @@ def collect_evidence(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[
 
 
 def _joint(inquiry: Inquiry, corrected: list[np.ndarray], held: Sequence[Recording], joint: int) -> JointEvidence:
-    problem = inquiry.problem
+    problem, left = inquiry.problem, inquiry.leftovers[joint]
     series = [
         (p.time[p.keep], *(problem.reduce(p, x)[:, joint] for x in (p.tau, p.load, c)))
         for p, c in zip(problem.holdout, corrected, strict=True)
@@ -85,6 +85,8 @@ def _joint(inquiry: Inquiry, corrected: list[np.ndarray], held: Sequence[Recordi
         residual=ResidualByVelocity(v, measured - nominal, measured - best),
         law=_law(inquiry, joint),
         noise_rms=float(inquiry.noise[joint]),
+        ceiling_share=left.ceiling.share if left.above else None,
+        leftover=left.shape,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.grams import collect_grams
+from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over
 from lagnet.diagnosis.library import Library, build_library
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
@@ -102,6 +104,16 @@ class Inquiry:
     def effects(self) -> tuple[NamedEffect, ...]:
         """What lasts and what passes."""
         return (*self.refit.effects, *(p.effect for p in self.passing))
+
+    @cached_property
+    def after(self) -> Leftover:
+        """Residuals of the corrected model."""
+        return left_over(self)
+
+    @cached_property
+    def leftovers(self) -> tuple[JointLeftover, ...]:
+        """What is left at each joint."""
+        return joint_leftovers(self, self.after)
 
 
 def diagnose(

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.diagnosis.leftover_shape import LeftoverShape
 from lagnet.types import Samples
 
 
@@ -77,8 +78,9 @@ class JointEvidence:
         residual: residual against velocity.
         law: the fitted friction law.
         noise_rms: estimated noise of the torque residual [unit].
-        ceiling_share: share of the residual power that any smooth function of state and short history predicts on
-            held-out motion, 0 to 1.
+        ceiling_share: share of what the named effects leave that any smooth function of state and short history
+            predicts on held-out motion, 0 to 1; None where they leave noise alone.
+        leftover: what they leave, against the signal that predicts it best.
     """
 
     joint: str
@@ -88,6 +90,7 @@ class JointEvidence:
     law: FrictionLaw | None = None
     noise_rms: float | None = None
     ceiling_share: float | None = None
+    leftover: LeftoverShape | None = None
 
     @property
     def velocity_unit(self) -> str:

@@ -39,9 +39,10 @@ def _left(problem: Problem, library: Library, found: Found) -> tuple[Motion, np.
     chosen, pieces = _chosen(library, found), spread_evenly(problem.fit, MOST_SAMPLES)
     thetas = [found.fit.coefficients[i] for i in found.selection]
     rests = [_rest(problem, chosen, thetas, piece) for piece in pieces]
-    names = ("time", "q", "v", "a", "load")
-    arrays = [np.concatenate([getattr(p, name)[p.keep] for p in pieces]) for name in names]
-    return Motion(*arrays, problem.slow, problem.nominal), np.concatenate(rests)
+    time, q, v, a, load = (
+        np.concatenate([getattr(p, name)[p.keep] for p in pieces]) for name in ("time", "q", "v", "a", "load")
+    )
+    return Motion(time, q, v, a, load, problem.slow, problem.nominal), np.concatenate(rests)
 
 
 def _chosen(library: Library, found: Found) -> Library:

@@ -67,12 +67,13 @@ class JointMismatch:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """What is left at a joint after the named physics."""
+    """What is left at a joint after the named physics, and a formula of its signals where a simple one holds most."""
 
     joint: str
     above_noise: bool
     share_of_mismatch: float
     depends_on: tuple[str, ...]
+    formula: str | None = None
 
 
 @dataclass(frozen=True)
