@@ -11,6 +11,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from validation.concealed.code import PACKAGE
+
 PATIENCE = 900  # [s] after which a diagnosis counts as failed
 INHERITED = ("PATH", "LANG", "LC_ALL", "VIRTUAL_ENV", "SYSTEMROOT")
 
@@ -53,7 +55,12 @@ def diagnose_blind(recordings: Path, names: tuple[str, ...], robot: str) -> Blin
 def _run(command: list[str], folder: Path) -> tuple[str, float]:
     """Last words where the command failed, else none; and its processor time [s]."""
     environment = {name: os.environ[name] for name in INHERITED if name in os.environ}
-    environment |= {"HOME": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    environment |= {
+        "PYTHONPATH": str(PACKAGE.parent),
+        "HOME": str(folder),
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+    }
     with (folder / "said.txt").open("w+") as said:
         process = subprocess.Popen(command, cwd=folder, env=environment, stdout=said, stderr=said)
         deadline = time.monotonic() + PATIENCE

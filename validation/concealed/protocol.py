@@ -16,6 +16,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from validation.concealed.blind import diagnose_blind
+from validation.concealed.code import fingerprint
 from validation.concealed.gain import gain_shares
 from validation.plants.catalogue.draw_plan import draw_plan
 from validation.plants.catalogue.plan import Plan
@@ -74,6 +75,7 @@ class Run:
                 self._put(plan, "failures", f"not simulated: {error}".encode(), ".txt")
                 return plan.name, f"was not simulated: {error}"
             self._publish("witnesses.sha256", witness.to_json(), f"{plan.name}.json")
+            code = fingerprint()
             blind = diagnose_blind(Path(folder), plan.recordings, plan.robot)
         self._publish("verdicts.sha256", blind.verdict, f"verdicts/{plan.name}.json")
         if blind.verdict:
@@ -87,6 +89,7 @@ class Run:
                 "seconds": blind.seconds,
                 "processor_seconds": blind.processor_seconds,
                 "message": blind.message,
+                "code": code,
                 "gain_share": shares[0],
                 "gain_share_with_rest": shares[1],
             },

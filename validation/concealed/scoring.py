@@ -44,6 +44,7 @@ class Score:
         gain_share, gain_share_with_rest: see `gain`; None where nothing or something unlisted was hidden.
         seconds, processor_seconds: of the diagnosis.
         failure: why there is no verdict.
+        code: fingerprint of the lagnet that gave it.
     """
 
     plant: str
@@ -60,6 +61,7 @@ class Score:
     seconds: float = 0.0
     processor_seconds: float = 0.0
     failure: str = ""
+    code: str = ""
 
     @property
     def wrong(self) -> int:
@@ -116,6 +118,7 @@ def score(plan: Plan, witness: Witness, verdict: dict | None, outcome: dict) -> 
         outcome["seconds"],
         outcome["processor_seconds"],
         outcome["message"] if verdict is None else "",
+        outcome.get("code", ""),
     )
 
 

@@ -67,6 +67,7 @@ def figures(scores: Sequence[Score]) -> dict:
         "share_of_plants_with_gain_over_95_percent": _share(sum(g >= 0.95 for g in gains), len(gains)),
         "median_seconds": _median([s.seconds for s in scores]),
         "median_processor_seconds": _median([s.processor_seconds for s in scores]),
+        "codes": sorted({s.code for s in scores if s.code}),  # more than one: the package changed meanwhile
         "failures": [f"{s.plant}: {s.failure}" for s in scores if s.failure],
     }
 
