@@ -52,6 +52,7 @@ class Diagnosis:
         evidence: the curves behind the verdict, for reports.
         fit_recordings, holdout_recordings: what was used for what.
         conditioned_holdout: the held-out recordings on their even clock.
+        ends_of: for each held-out recording the index of the fitted one that it is the end of, None for another.
         standing: what the next recording is planned from.
     """
 
@@ -61,6 +62,7 @@ class Diagnosis:
     fit_recordings: tuple[Recording, ...]
     holdout_recordings: tuple[Recording, ...]
     conditioned_holdout: Conditioned
+    ends_of: tuple[int | None, ...]
     standing: Standing
 
     @property
@@ -140,9 +142,10 @@ def diagnose(
         DiagnosisError: no recording, or joints that are not the model's.
     """
     fit_on, held = _divide(recordings, robot, holdout)
+    ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
     fit = condition(fit_on, bandwidth)
     unseen = condition(held, fit.bandwidth)
-    problem = sharpen(pose_problem(robot, fit, unseen))
+    problem = sharpen(pose_problem(robot, fit, unseen, ends_of))
     noise = noise_floor(problem, fit, seed)
     if nominal_error is not None:
         noise = np.hypot(noise, nominal_error)
@@ -150,7 +153,7 @@ def diagnose(
     inquiry = settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
     corrected = CorrectedModel(robot, inquiry.effects, inquiry.problem.slow, inquiry.problem.held)
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
-    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen, inquiry.standing)
+    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen, ends_of, inquiry.standing)
 
 
 def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.ndarray, seed: int) -> Inquiry:

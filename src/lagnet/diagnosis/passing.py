@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lagnet.diagnosis.carried_on import carry_on
 from lagnet.diagnosis.problem import OVERSAMPLING, Problem, blurred_speed
 from lagnet.diagnosis.refit import Refit, refit
 from lagnet.diagnosis.sharpness import sharpen
@@ -20,6 +21,7 @@ from lagnet.models.corrected import EDGES, NamedEffect
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
 
+SUSPECT = 2.0  # times the gain of the next best interval: reason enough to look again without the spell
 LOOKS = 3  # rounds in which spells and lasting effects settle
 LEFT = 0.25  # of the power inside a spell: where a law leaves more, it is not the law
 HELPS = 0.5  # of the error inside a spell that must remain at most, on parts that were not fitted
@@ -51,14 +53,14 @@ def settle_passing(inquiry: Inquiry, again: Callable[[Problem], Inquiry]) -> Inq
         again: another inquiry into the same recordings with some samples set aside.
     """
     problem = inquiry.problem
-    scan = find_spells(problem, inquiry.refit.effects, inquiry.noise)
+    scan = find_spells(problem, inquiry.refit.effects, inquiry.noise, SUSPECT)
     spells, clean = scan.spells, inquiry
     for _ in range(LOOKS):
         if not spells:
             return inquiry
         masked = set_aside(problem, spells)
         if too_much(problem, masked):
-            return inquiry
+            return replace(inquiry, spells=spells)
         clean = again(sharpen(replace(masked, slow=blurred_speed(inquiry.fit), held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = find_spells(whole, clean.refit.effects, inquiry.noise)
@@ -85,7 +87,8 @@ def _named(clean: Inquiry, scan: Scan) -> Inquiry:
             found.append(Passing(effect, wide, fit, 0.0))
     rest = Refit(together.effects[:n], together.intervals[:n], together.correlations)
     shares = _shares(clean.problem, rest.effects, [p.effect for p in found])
-    passing = tuple(replace(p, share=s) for p, s in zip(found, shares, strict=True))
+    shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]
+    passing, nameless = carry_on(clean.problem, shared, nameless)
     return replace(clean, refit=rest, passing=passing, spells=nameless)
 
 

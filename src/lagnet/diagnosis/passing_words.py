@@ -48,12 +48,10 @@ def _name(recordings: Sequence[Recording], index: int, held_out: bool = False) -
 
 
 def _warning(spell: Spell, recording: str) -> str:
-    left_out = (
-        "names were judged without it" if spell.held_out else "it has no name, and all else was fitted without it"
-    )
+    why = "it lies in a held-out recording and gets no name" if spell.held_out else "it has no name"
     return (
         f"{recording}: from {spell.start:.4g} s to {spell.end:.4g} s something acts on the arm that is absent from the "
-        f"rest of the recordings, such as a contact or a load; {left_out}"
+        f"rest of the recordings, such as a contact or a load; {why}"
     )
 
 

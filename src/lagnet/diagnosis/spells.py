@@ -20,7 +20,7 @@ STANDS_OUT = 4.0  # times the gain of the next best interval: lasting physics of
 LEAST_SHARE = 0.5  # of the power inside that the columns must explain
 TRIED = 8  # intervals that are looked at closely
 SMEAR = 1.5  # periods of the bandwidth by which the filter widens a spell
-MOST = 0.5  # of the samples that may be set aside
+MOST = 0.75  # of the samples that may be set aside
 FEW = 8  # samples of a joint below which a block says nothing
 
 
@@ -62,11 +62,14 @@ class Scan:
     inflation: float
 
 
-def find_spells(problem: Problem, effects: Sequence[NamedEffect], noise: np.ndarray) -> Scan:
+def find_spells(
+    problem: Problem, effects: Sequence[NamedEffect], noise: np.ndarray, stands_out: float = STANDS_OUT
+) -> Scan:
     """Scans what lasting effects leave of all recordings.
 
     Args:
         noise: shape (dof,), noise floor [N m].
+        stands_out: how far an interval must leave behind the next best one.
     """
     fitted, held = (strands_of(problem, pieces, effects) for pieces in (problem.fit, problem.holdout))
     strands = [*((s, False) for s in fitted), *((s, True) for s in held)]
@@ -76,7 +79,7 @@ def find_spells(problem: Problem, effects: Sequence[NamedEffect], noise: np.ndar
     law = ContactForce()
     sums = [run_up(law.relaxed(s.motion), s.rest * s.counts, s.counts / power) for s, _ in strands]
     shortest = max(FEW, round(SHORTEST * _rate(fitted)))
-    looked = _closest_looks(sums, shortest)
+    looked = _closest_looks(sums, shortest, stands_out)
     spells = [_spell(strands[n], start, stop, gain) for n, start, stop, gain in looked.best]
     return Scan(tuple(spells), power, looked.inflation)
 
@@ -142,7 +145,7 @@ class _Looks:
     inflation: float
 
 
-def _closest_looks(sums: Sequence[Running], shortest: int) -> _Looks:
+def _closest_looks(sums: Sequence[Running], shortest: int, stands_out: float) -> _Looks:
     """Tries windows of all lengths in all strands, then moves the edges of the best ones."""
     tables = []
     for n, running in enumerate(sums):
@@ -157,25 +160,28 @@ def _closest_looks(sums: Sequence[Running], shortest: int) -> _Looks:
     inflation = max(1.0, float(np.median(table[lengths == shortest, 3])) / by_chance)
     usual = {n: float(np.median(table[lengths == n, 3])) for n in np.unique(lengths)}
     score = table[:, 3] / np.maximum([usual[n] for n in lengths], by_chance)
-    found: list[tuple[int, int, int, float]] = []
-    order = np.argsort(-score)
+    found: list[tuple[int, int, int, float, float]] = []
     free = np.ones(len(table), dtype=bool)
-    for i in order:
+    for i in np.argsort(-score):
         if len(found) == TRIED or not free[i]:
             continue
         n, start, stop = (int(x) for x in table[i, :3])
         start, stop = sums[n].best_edges(start, stop, shortest)
         gain = float(sums[n].gains(np.array([start]), np.array([stop]))[0])
-        if not any(m == n and start < b and a < stop for m, a, b, _ in found):
-            share = gain / max(0.5 * (sums[n].power[stop] - sums[n].power[start]), 1e-300)
-            found.append((n, start, stop, gain / inflation if share > LEAST_SHARE else 0.0))
+        if not any(m == n and start < b and a < stop for m, a, b, _, _ in found):
+            share = gain / max(0.5 * float(sums[n].power[stop] - sums[n].power[start]), 1e-300)
+            found.append((n, start, stop, gain / inflation, share))
         free &= ~((table[:, 0] == n) & (table[:, 1] < stop) & (start < table[:, 2]))
-    return _Looks(_standing_out(found), inflation)
+    return _Looks(_standing_out(found, stands_out), inflation)
 
 
-def _standing_out(found: Sequence[tuple[int, int, int, float]]) -> tuple[tuple[int, int, int, float], ...]:
-    """The strongest intervals down to the last that leaves the next one far behind."""
+def _standing_out(
+    found: Sequence[tuple[int, int, int, float, float]], factor: float
+) -> tuple[tuple[int, int, int, float], ...]:
+    """The strongest intervals down to the last that leaves the next one far behind; columns must explain each."""
     ranked = sorted(found, key=lambda f: -f[3])
+    good = len(ranked) if len(ranked) < TRIED else TRIED - 1  # what comes after the last that was tried is not known
+    good = next((k for k, f in enumerate(ranked) if f[4] < LEAST_SHARE and k < good), good)
     gains = [*(f[3] for f in ranked), 0.0]
-    last = [k for k in range(1, len(ranked)) if gains[k - 1] > max(LEAST, STANDS_OUT * gains[k])]
-    return tuple(ranked[: max(last)]) if last else ()
+    last = [k for k in range(1, good + 1) if gains[k - 1] > max(LEAST, factor * gains[k])]
+    return tuple(f[:4] for f in ranked[: max(last)]) if last else ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +33,11 @@ def holdout_table(diagnosis: Diagnosis) -> pa.Table:
     columns: dict[str, list[np.ndarray]] = {}
     names: list[str] = []
     for index, recording in enumerate(diagnosis.holdout_recordings):
+        corrected = replace(diagnosis.corrected, recording=diagnosis.ends_of[index])
         parts = {
             "measured": recording.tau,
             "nominal": torque_at_samples(diagnosis.corrected.nominal, recording, diagnosis.conditioned_holdout, index),
-            "corrected": torque_at_samples(diagnosis.corrected, recording, diagnosis.conditioned_holdout, index),
+            "corrected": torque_at_samples(corrected, recording, diagnosis.conditioned_holdout, index),
         }
         columns.setdefault("time", []).append(recording.time)
         for joint in range(recording.n_dof):

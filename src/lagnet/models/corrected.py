@@ -117,6 +117,8 @@ class CorrectedModel:
         held: shape (dof,), share of the dry friction that stays while a joint rests; None: none.
         source: folder it was read from, "" if none.
         sha256: checksum of what it was read from.
+        recording: index of the fitted recording whose motion it is asked for; None: any other motion, where nothing
+            acts that lasts for a while only.
     """
 
     nominal: InverseDynamics | Any
@@ -125,6 +127,7 @@ class CorrectedModel:
     held: JointVector | None = None
     source: str = ""
     sha256: str = ""
+    recording: int | None = None
     kind: str = field(default="corrected", init=False)
 
     def __post_init__(self) -> None:
@@ -217,7 +220,7 @@ class CorrectedModel:
         return torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
 
     def _motion(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory, load: Trajectory) -> Motion:
-        return Motion(time, q, v, a, load, self.slow, self.nominal)
+        return Motion(time, q, v, a, load, self.slow, self.nominal, recording=self.recording)
 
 
 def torque_along(model: Any, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:

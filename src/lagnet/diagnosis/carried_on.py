@@ -1,0 +1,43 @@
+"""What still acts when the fitted part of a recording ends, and its held-out part begins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.spells import SMEAR, Spell
+
+if TYPE_CHECKING:
+    from lagnet.diagnosis.passing import Passing
+
+
+def carry_on(
+    problem: Problem, passing: Sequence[Passing], nameless: Sequence[Spell]
+) -> tuple[tuple[Passing, ...], tuple[Spell, ...]]:
+    """Effects that last into the held-out part of their recording, and the spells that they do not explain."""
+    out, left = [], list(nameless)
+    for one in passing:
+        found = [s for s in left if _continues(problem, one, s)]
+        out.append(_until(one, found[0].end, problem.rate) if found else one)
+        left = [s for s in left if s not in found]
+    return tuple(out), tuple(left)
+
+
+def _continues(problem: Problem, passing: Passing, spell: Spell) -> bool:
+    """Whether a held-out spell begins where the fitted part of the effect's recording ends with the effect."""
+    fitted = [p for p in problem.fit if p.recording == passing.effect.recording]
+    held = [p for p in problem.holdout if p.recording == spell.recording and p.origin == passing.effect.recording]
+    if not (spell.held_out and fitted and held and passing.effect.interval):
+        return False
+    slack = SMEAR / problem.bandwidth
+    to_the_end = passing.effect.interval[1] > fitted[-1].time[fitted[-1].keep[-1]] - slack
+    return bool(to_the_end and spell.start < held[0].time[held[0].keep[0]] + slack)
+
+
+def _until(passing: Passing, end: float, rate: float) -> Passing:
+    """The same effect with a later end, known to one period of the samples that the scan looks at."""
+    start = passing.effect.interval[0] if passing.effect.interval else end
+    intervals = {**passing.intervals, "t1": (end - 1.0 / rate, end + 1.0 / rate)}
+    return replace(passing, effect=replace(passing.effect, interval=(start, end)), intervals=intervals)
