@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -51,13 +52,16 @@ def command(
     from lagnet.cli.console import numbers, say
     from lagnet.cli.simulated import nominal_from
     from lagnet.diagnosis.diagnose import diagnose
+    from lagnet.diagnosis.side_by_side import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
     from lagnet.models.loading import load_any
     from lagnet.recordings.load import load_recording
     from lagnet.reports.diagnosis_report import write_report
 
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
-    model, missed = (load_any(robot), None) if robot else nominal_from(simulated or [], columns, constants, seed)
+    model, missed, of_simulator = (
+        (load_any(robot), None, []) if robot else nominal_from(simulated or [], columns, constants, seed)
+    )
     read = [
         [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]
         for paths in (recordings, holdout or [])
@@ -65,7 +69,8 @@ def command(
     say(f"{sum(map(len, read))} recordings read, diagnosing")
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     write_diagnosis(result, out)
-    write_report(result.verdict.to_dict(), result.evidence, out / "report.html")
+    evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
+    write_report(result.verdict.to_dict(), evidence, out / "report.html")
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:

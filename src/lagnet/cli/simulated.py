@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lagnet.cli.console import say
 
+if TYPE_CHECKING:
+    from lagnet.recordings.recording import Recording
+
 
 def nominal_from(
     paths: Sequence[Path], columns: Path | None, constants: list[float] | None, seed: int
-) -> tuple[Any, np.ndarray]:
-    """The learned model, and the torque that it is known to miss, shape (dof,) [N m]."""
+) -> tuple[Any, np.ndarray, list[Recording]]:
+    """The learned model, the torque that it is known to miss, shape (dof,) [N m], and the simulated recordings."""
     from lagnet.diagnosis.from_simulated import learn_nominal
     from lagnet.recordings.load import load_recording
 
@@ -22,4 +25,4 @@ def nominal_from(
     say(f"learning the simulator's arm from {len(read)} recordings")
     learned = learn_nominal(read, seed=seed)
     say(f"learned as {learned.kind}; held-out error {100 * float(np.max(learned.share)):.2g} % at its worst joint")
-    return learned.model, learned.error
+    return learned.model, learned.error, read

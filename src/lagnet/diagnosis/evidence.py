@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.leftover_shape import LeftoverShape
+from lagnet.diagnosis.side_by_side import SideBySide
 from lagnet.types import Samples
 
 
@@ -141,6 +142,7 @@ class Evidence:
         settings: resolved settings of the diagnosis, by name.
         versions: versions of the packages that computed it, by name.
         checksums: sha256 of what went in, by file name.
+        overlays: real and simulated logs of the same commands, where there were logs of a simulator.
     """
 
     joints: tuple[JointEvidence, ...] = ()
@@ -150,6 +152,7 @@ class Evidence:
     settings: Mapping[str, Any] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
     checksums: Mapping[str, str] = field(default_factory=dict)
+    overlays: tuple[SideBySide, ...] = ()
 
     def of(self, joint: str) -> JointEvidence:
         """The evidence on a joint by its name; an empty one where there is none."""
