@@ -9,6 +9,7 @@ from lagnet.diagnosis.verdict import EffectEvidence, NamedParameter
 from lagnet.effects.effect import Effect
 
 MOST_PARAMETERS = 4  # that a sentence lists
+LEAST_PERCENT = 0.01  # that is written as a number
 
 
 def explain(
@@ -46,8 +47,11 @@ def explain_passing(
 
 
 def percent(share: float) -> str:
-    """A share as a percentage with two digits that count."""
-    return f"{100.0 * share:.2g} %"
+    """A share as a percentage with two digits that count, and no power of ten."""
+    value = 100.0 * share
+    if value >= 10.0:
+        return f"{value:.0f} %"
+    return f"{value:.2g} %" if value >= LEAST_PERCENT else f"less than {LEAST_PERCENT:g} %"
 
 
 def advice(law: Effect, joint: str | None) -> str:

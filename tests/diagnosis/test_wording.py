@@ -1,0 +1,15 @@
+"""Shares are written as a reader would say them."""
+
+from __future__ import annotations
+
+import pytest
+
+from lagnet.diagnosis.wording import percent
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [(2.5, "250 %"), (0.456, "46 %"), (0.0123, "1.2 %"), (0.00034, "0.034 %"), (3e-7, "less than 0.01 %")],
+)
+def test_a_share_is_a_percentage_without_a_power_of_ten(share: float, words: str) -> None:
+    assert percent(share) == words
