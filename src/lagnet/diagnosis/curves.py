@@ -49,7 +49,7 @@ def collect_evidence(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[
     """All curves of one diagnosis."""
     problem = inquiry.problem
     motions = [replace(p.motion(problem), recorded=None) for p in problem.holdout]
-    corrected = [torque_with(m, inquiry.refit.effects) for m in motions]
+    corrected = [torque_with(m, inquiry.effects) for m in motions]
     return Evidence(
         joints=tuple(_joint(inquiry, corrected, held, j) for j in range(problem.n_dof)),
         contests=_contests(inquiry),
