@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -27,12 +27,14 @@ class Finding:
         where: the place: q, v, a as lists, or joint, link, recording, time.
         detail: one sentence with the numbers that help to mend it.
         limit: where the limit depends on what was found; None for the check's own.
+        joints: the value of every joint with its 95 % interval, where the check has one: joint, value, ci95.
     """
 
     value: float
     where: Mapping[str, Any] = field(default_factory=dict)
     detail: str = ""
     limit: float | None = None
+    joints: tuple[Mapping[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ class CheckResult:
     detail: str = ""
     justification: str = ""
     at_least: bool = False
+    joints: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -100,7 +103,8 @@ class Check(ABC):
         limit = float(subject.settings.limits.get(self.name, own))
         held = found.value >= limit if self.at_least else found.value <= limit
         value = float(found.value) if np.isfinite(found.value) else None
-        return self._result(PASS if held else FAIL, value, limit, found.where, found.detail)
+        result = self._result(PASS if held else FAIL, value, limit, found.where, found.detail)
+        return replace(result, joints=found.joints)
 
     def not_applicable(self, reason: str) -> CheckResult:
         """The result where the check has nothing to say."""
@@ -134,5 +138,6 @@ def place(where: Mapping[str, Any] | None) -> str:
             shown = ", ".join(f"{x:.3g}" if isinstance(x, float) else str(x) for x in value)
             words.append(f"{name} = [{shown}]")
         else:
-            words.append(f"{name} {value:.6g}" if isinstance(value, float) else f"{name} {value}")
+            shown = f"{value:.6g}" if isinstance(value, float) else str(value)
+            words.append(f"{name} {shown} s" if name == "time" else f"{name} {shown}")
     return " at " + ", ".join(words)

@@ -40,7 +40,8 @@ def largest_share(subject: Subject, signal: str, limit: np.ndarray, words: str) 
             share = np.abs(values) / limit
             row, joint = (int(i) for i in np.unravel_index(np.argmax(share), share.shape))
             detail = (
-                f"{words} of {subject.joints[joint]} is {values[row, joint]:.4g}, limit {limit[joint]:.4g}; share of it"
+                f"{words} of {subject.joints[joint]} is {values[row, joint]:.4g} {subject.unit(signal, joint)}, "
+                f"limit {limit[joint]:.4g}; share of it"
             )
             found.append(Finding(float(share[row, joint]), place(subject, recording, row, joint), detail))
     if not found:

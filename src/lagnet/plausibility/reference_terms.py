@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
 import numpy as np
 
 from lagnet.decomposition.agreement import Agreement, agreement, blocks_of, variance_floor
 from lagnet.decomposition.motion_of import motion_of
 from lagnet.decomposition.offers import offers
 from lagnet.decomposition.terms import Terms, terms_of
-from lagnet.plausibility.check import Finding, NotApplicable
-from lagnet.plausibility.subject import Subject
+from lagnet.errors import ModelError
+from lagnet.plausibility.calling import NotFinite
+from lagnet.plausibility.check import Finding, NotApplicable, place
+from lagnet.plausibility.search import worst_configuration
+from lagnet.plausibility.subject import CALLS, Subject
 
+Call = Callable[..., np.ndarray]
+
+SYMBOLS = {"inertial": "qa", "coriolis": "qv", "gravity": "q", "residual": "qva", "total": "qva"}
+CALL_OF = {
+    "coriolis": "coriolis_torque",
+    "gravity": "gravity_torque",
+    "residual": "residual_torque",
+    "total": "inverse_dynamics",
+}
 SAMPLES = 1000
 MOST = 5000  # samples of recordings that are compared, evenly spread
 RIGID, LEARNED = 1e-12, 0.05
@@ -18,7 +34,7 @@ RIGID, LEARNED = 1e-12, 0.05
 
 def term_limit(subject: Subject) -> float:
     """Two models made of bodies must agree to rounding; a learned one may miss 5 % of a term's variance."""
-    made_of_bodies = subject.offers("inertial_parameters") and hasattr(subject.reference, "inertial_parameters")
+    made_of_bodies = subject.offers("inertial_parameters") and offers(subject.reference, "inertial_parameters")
     return RIGID if made_of_bodies else LEARNED
 
 
@@ -36,18 +52,35 @@ def compare(subject: Subject, term: str) -> Finding:
     if subject.reference is None:
         raise NotApplicable("no reference was given")
     q, v, a, blocks = _motion(subject)
-    own, believed = terms_of(_Guarded(subject), q, v, a), terms_of(subject.reference, q, v, a)
-    found = _agreement(own, believed, term, blocks, subject.seed)
+    own, believed = _Guarded(subject.model, subject.call), _Guarded(subject.reference, _call_of_reference(subject))
+    found = _agreement(terms_of(own, q, v, a), terms_of(believed, q, v, a), term, blocks, subject.seed)
     joint = int(np.argmax(found.nmse))
-    interval = "" if np.isnan(found.low[joint]) else f" (95 % {found.low[joint]:.3g} … {found.high[joint]:.3g})"
-    others = ", ".join(f"{x:.2g}" for x in found.nmse)
-    off = np.abs(getattr(own, term) - getattr(believed, term))[:, joint]
-    k = int(np.argmax(off))
-    where = {"joint": subject.joints[joint], "q": q[k].tolist(), "v": v[k].tolist(), "a": a[k].tolist()}
-    detail = (
-        f"{term} torque of {subject.joints[joint]} differs by up to {off[k]:.3g} N m{interval}; nMSE of all joints "
-    )
-    return Finding(float(found.nmse[joint]), where, detail + f"{others}; worst")
+    off, where = _farthest_apart(subject, own, believed, term, joint, (q, v, a))
+    detail = f"{term} torque of {subject.joints[joint]} differs by up to {off:.3g} {subject.unit('tau', joint)}; nMSE"
+    if not np.isnan(found.low[joint]):
+        detail += f" (95 % {found.low[joint]:.3g} … {found.high[joint]:.3g})"
+    every = zip(subject.joints, found.nmse.tolist(), found.low.tolist(), found.high.tolist(), strict=True)
+    joints = tuple({"joint": name, "value": value, "ci95": [low, high]} for name, value, low, high in every)
+    return Finding(float(found.nmse[joint]), {"joint": subject.joints[joint], **where}, detail, joints=joints)
+
+
+def _farthest_apart(
+    subject: Subject, own: _Guarded, believed: _Guarded, term: str, joint: int, motion: tuple[np.ndarray, ...]
+) -> tuple[float, dict[str, Any]]:
+    """Where the torques of a joint differ most, on the motion compared and by search around it."""
+
+    def apart(*at: np.ndarray) -> np.ndarray:
+        motion = dict(zip(symbols, at, strict=True))
+        return np.abs(own.term(term, motion) - believed.term(term, motion))[:, joint]
+
+    symbols = SYMBOLS[term]
+    at = [x for symbol, x in zip("qva", motion, strict=True) if symbol in symbols]
+    seen = apart(*at)
+    k = int(np.argmax(seen))
+    worst, where = worst_configuration(subject, symbols, apart)
+    if seen[k] >= worst.value:
+        return float(seen[k]), {symbol: x[k].tolist() for symbol, x in zip(symbols, at, strict=True)}
+    return worst.value, where
 
 
 def _agreement(own: Terms, believed: Terms, term: str, blocks: np.ndarray, seed: int) -> Agreement:
@@ -71,11 +104,34 @@ def _motion(subject: Subject) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     return q, v, a, np.concatenate(blocks)
 
 
-class _Guarded:
-    """The model under examination, called through its subject."""
+def _call_of_reference(subject: Subject) -> Call:
+    def call(name: str, *arrays: np.ndarray) -> np.ndarray:
+        try:
+            return subject.believed.call(name, *arrays)
+        except NotFinite as found:
+            raise ModelError(
+                f"{found.call} of the reference gives a number that is not finite",
+                where=place(found.where).removeprefix(" at "),
+                next_step="check the reference by itself first",
+            ) from None
 
-    def __init__(self, subject: Subject):
-        self.mass_matrix, self.coriolis_torque = subject.mass_matrix, subject.coriolis_torque
-        self.gravity_torque, self.inverse_dynamics = subject.gravity_torque, subject.torque
-        if subject.offers("residual_torque"):
-            self.residual_torque = subject.residual
+    return call
+
+
+class _Guarded:
+    """The calls of a model that the terms are made from, each made with care."""
+
+    def __init__(self, model: Any, call: Call):
+        for name in CALLS:
+            setattr(self, name, partial(call, name))
+        self._call, self._has_residual = call, offers(model, "residual_torque")
+        if self._has_residual:
+            self.residual_torque = partial(call, "residual_torque")
+
+    def term(self, name: str, motion: Mapping[str, np.ndarray]) -> np.ndarray:
+        """One term of the torque, shape (n, dof), from those of q, v, a that it depends on."""
+        if name == "inertial":
+            return np.einsum("nij,nj->ni", self._call("mass_matrix", motion["q"]), motion["a"])
+        if name == "residual" and not self._has_residual:
+            return terms_of(self, *motion.values()).residual
+        return self._call(CALL_OF[name], *motion.values())

@@ -13,6 +13,8 @@ from lagnet.plausibility.subject import Subject
 Measure = Callable[[np.ndarray], np.ndarray]
 STEP = 1e-4  # of the half width of the box: small against its shape, large against rounding
 CORNERS = 32
+REACHES = (0.2, 0.05)  # of the half width: how far the neighbours of each round lie
+NEIGHBOURS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +78,24 @@ def worst_point(subject: Subject, dimension: int, measure: Measure) -> Worst:
     for start in points[np.argsort(values)[::-1][: subject.settings.starts]]:
         _climb(seen, start, subject.settings.iterations)
     return Worst(seen.value, seen.point, sampled)
+
+
+def closer_and_closer(measure: Measure, start: np.ndarray, value: float, rng: np.random.Generator) -> Worst:
+    """The worst point near a start, for measures too costly for gradients: neighbours of the worst so far, in rounds.
+
+    Args:
+        measure: takes points (n, p) of the cube, returns (n,).
+        start: shape (p,), with `value` there.
+        rng: of the neighbours.
+    """
+    point, worst = start, value
+    for reach in REACHES:
+        near = np.clip(point + reach * rng.standard_normal((NEIGHBOURS, start.size)), -1.0, 1.0)
+        values = measure(near)
+        top = int(np.argmax(values))
+        if values[top] > worst:
+            point, worst = near[top], float(values[top])
+    return Worst(worst, point, value)
 
 
 class _Best:

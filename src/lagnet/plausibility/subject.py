@@ -1,8 +1,7 @@
-"""The model under examination, called with care: one batch size, checked shapes, finite numbers, its own rounding."""
+"""The model under examination, the motion that it is meant for, and the size and rounding of its numbers."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,23 +11,16 @@ import numpy as np
 
 from lagnet.decomposition.offers import offers
 from lagnet.errors import ModelError
+from lagnet.plausibility.calling import CarefulCalls
 from lagnet.plausibility.ranges import Ranges, ranges_of
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.recordings.recording import Recording
 from lagnet.types import JointVector, MassMatrix, Trajectory
 
 CALLS = ("inverse_dynamics", "mass_matrix", "coriolis_torque", "gravity_torque")
-BATCH = 32  # the only batch size that a compiled model sees: it compiles once a call, not for every number of rows
-COMPILING = 0.1, 5.0  # [s] and ratio by which a first call outlasts the second, if the model compiles
+UNITS = {"q": ("rad", "m"), "v": ("rad/s", "m/s"), "tau": ("N m", "N")}  # of turning and of sliding joints
+NEGLIGIBLE = 1e-9  # of the torque: less than this is no residual
 COARSEST_ROUNDING = 1e-6  # single precision; a model that is noisier gets no slack for it
-
-
-class NotFinite(Exception):
-    """The model gave a number that is not finite; carries the call and the configuration."""
-
-    def __init__(self, call: str, where: dict[str, list[float]]):
-        self.call, self.where = call, where
-        super().__init__(call)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +61,11 @@ class Subject:
         """Joint names in model order."""
         return self.model.joints
 
+    def unit(self, signal: str, joint: int) -> str:
+        """Unit of a signal (q, v or tau) of a joint."""
+        turns, slides = UNITS[signal]
+        return turns if self.ranges.revolute[joint] else slides
+
     @cached_property
     def ranges(self) -> Ranges:
         """The box of motion that the model is meant for."""
@@ -88,6 +85,14 @@ class Subject:
         """The torque ε that the model itself sets apart from mechanics, shape (n, dof); zero without one."""
         return self.call("residual_torque", q, v, a) if self.offers("residual_torque") else np.zeros_like(q)
 
+    @cached_property
+    def residual_present(self) -> np.ndarray:
+        """Which joints have a residual at all, shape (dof,): a model may offer one that is zero."""
+        if not self.offers("residual_torque"):
+            return np.zeros(self.n_dof, dtype=bool)
+        size = np.sqrt(np.mean(self.residual(*self.random(256, salt=10)) ** 2, axis=0))
+        return size > NEGLIGIBLE * self.torque_scale
+
     def mechanical_torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque without ε, shape (n, dof)."""
         return self.torque(q, v, a) - self.residual(q, v, a)
@@ -105,56 +110,17 @@ class Subject:
         return self.call("gravity_torque", q)
 
     def call(self, name: str, *arrays: Trajectory) -> np.ndarray:
-        """One call of the model, in batches of one size if it compiles.
-
-        Raises:
-            ModelError: the call fails, or gives an array of another shape.
-            NotFinite: it gives a number that is not finite.
-        """
-        out = self._in_batches(name, arrays) if self.compiles else self._answer(name, list(arrays))
-        good = np.isfinite(out.reshape(len(out), -1)).all(axis=1)
-        if not good.all():
-            bad = int(np.flatnonzero(~good)[0])
-            raise NotFinite(name, {s: array[bad].tolist() for s, array in zip("qva", arrays, strict=False)})
-        return out
+        """One call of the model, see `CarefulCalls.call`."""
+        return self._calls.call(name, *arrays)
 
     @cached_property
-    def compiles(self) -> bool:
-        """Whether the model compiles anew for every shape of its arrays, as those in JAX do: seen by its first call."""
-        rows, took = [np.repeat(x, BATCH, axis=0) for x in self.random(1, salt=14)], []
-        for _ in range(2):
-            begin = time.perf_counter()
-            self._answer("inverse_dynamics", rows)
-            took.append(time.perf_counter() - begin)
-        least, ratio = COMPILING
-        return took[0] > least and took[0] > ratio * took[1]
+    def believed(self) -> CarefulCalls:
+        """The reference, called as carefully as the model; only where there is one."""
+        return CarefulCalls(self.reference)
 
-    def _in_batches(self, name: str, arrays: tuple[Trajectory, ...]) -> np.ndarray:
-        pieces = []
-        for start in range(0, len(arrays[0]), BATCH):
-            rows = [array[start : start + BATCH] for array in arrays]
-            short = BATCH - len(rows[0])
-            padded = [np.concatenate([r, np.repeat(r[-1:], short, axis=0)]) for r in rows] if short else rows
-            pieces.append(self._answer(name, padded)[: len(rows[0])])
-        return np.concatenate(pieces)
-
-    def _answer(self, name: str, arrays: list[np.ndarray]) -> np.ndarray:
-        n, dof = arrays[0].shape
-        try:
-            out = np.asarray(getattr(self.model, name)(*arrays), dtype=float)
-        except (TypeError, ValueError, IndexError, ArithmeticError, AttributeError) as error:
-            raise ModelError(
-                f"{name} failed on arrays of shape {arrays[0].shape}: {error}",
-                where=type(self.model).__name__,
-                next_step="the calls take NumPy arrays, batch first, and return one row a sample",
-            ) from error
-        if name in ("mass_matrix", "coriolis_matrix"):
-            expected: tuple[int, ...] = (n, dof, dof)
-        else:
-            expected = (n,) if name in ("kinetic_energy", "potential_energy") else (n, dof)
-        if out.shape != expected:
-            raise ModelError(f"{name} gives shape {out.shape}, expected {expected}", where=type(self.model).__name__)
-        return out
+    @cached_property
+    def _calls(self) -> CarefulCalls:
+        return CarefulCalls(self.model)
 
     def random(self, n: int, salt: int = 0) -> tuple[Trajectory, Trajectory, Trajectory]:
         """Random q, v, a of the box of motion, each of shape (n, dof)."""

@@ -7,12 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from lagnet.errors import LagnetError, closest
+from lagnet.plausibility.calling import NotFinite
 from lagnet.plausibility.check import FAIL, CheckResult
 from lagnet.plausibility.checks import CHECK_NAMES, CHECKS
 from lagnet.plausibility.checks.finite_output import FiniteOutput, not_finite
 from lagnet.plausibility.report import PlausibilityReport
 from lagnet.plausibility.settings import CheckSettings
-from lagnet.plausibility.subject import NotFinite, Subject
+from lagnet.plausibility.subject import Subject
 from lagnet.recordings.recording import Recording
 
 

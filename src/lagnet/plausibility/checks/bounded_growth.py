@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from lagnet.plausibility.calling import NotFinite
 from lagnet.plausibility.check import Check, Finding
 from lagnet.plausibility.search import worst_configuration
-from lagnet.plausibility.subject import NotFinite, Subject
+from lagnet.plausibility.subject import Subject
 
 NEAR, FAR = 10.0, 100.0  # times the box of motion
 # Powers that rigid bodies reach: H is quadratic in the position of sliding joints, c in v, torque linear in a. Turning

@@ -33,7 +33,9 @@ class CoriolisFromMassMatrix(Check):
             subject.coriolis_torque(q, v)[0, joint],
             derivatives.christoffel_torque(gradient, v)[0, joint],
         )
-        detail = f"c of {subject.joints[joint]} is {own:.6g}, from H it is {christoffel:.6g} N m"
+        detail = (
+            f"c of {subject.joints[joint]} is {own:.6g}, from H it is {christoffel:.6g} {subject.unit('tau', joint)}"
+        )
         return Finding(worst.value, where, detail)
 
     @staticmethod

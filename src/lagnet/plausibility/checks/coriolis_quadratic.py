@@ -37,4 +37,4 @@ class CoriolisQuadratic(Check):
         rest = subject.coriolis_torque(np.array([where["q"]]), np.zeros((1, subject.n_dof)))[0]
         joint = int(np.argmax(np.abs(rest / subject.torque_scale)))
         detail = f"c misses the law of v² by a share of the torque; at rest c of {subject.joints[joint]} is "
-        return Finding(worst.value, where, detail + f"{rest[joint]:.3g} N m")
+        return Finding(worst.value, where, detail + f"{rest[joint]:.3g} {subject.unit('tau', joint)}")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
 
 from lagnet.plausibility.check import Check, Finding
 from lagnet.plausibility.energy import energy_scale, kinetic_energy
 from lagnet.plausibility.motions import DURATION, SmoothMotion, dimension, motions
+from lagnet.plausibility.search import closer_and_closer
 from lagnet.plausibility.subject import Subject
 
-MOTIONS, TRIES = 8, 12
+MOTIONS = 8
 
 
 class EnergyAlongMotion(Check):
@@ -34,13 +34,8 @@ class EnergyAlongMotion(Check):
         points = rng.uniform(-1, 1, (MOTIONS, dimension(subject)))
         drifts = self._drift(subject, points).max(axis=1)
         start = points[int(np.argmax(drifts))]
-        best = minimize(
-            lambda x: -float(self._drift(subject, np.clip(x[None], -1, 1)).max()),
-            start,
-            method="Nelder-Mead",
-            options={"maxfev": TRIES, "initial_simplex": _simplex(start, rng)},
-        )
-        point = np.clip(best.x, -1, 1) if -best.fun > drifts.max() else start
+        worst = closer_and_closer(lambda x: self._drift(subject, x).max(axis=1), start, float(drifts.max()), rng)
+        point = worst.point
         drift = self._drift(subject, point[None])[0]
         panel = int(np.argmax(drift))
         motion = motions(subject, point[None])
@@ -69,8 +64,3 @@ def _lifted(subject: Subject, motion: SmoothMotion) -> np.ndarray:
         return potential - potential[:, :1]
     g = subject.gravity_torque(motion.q.reshape(-1, dof)).reshape(m, n, dof)
     return motion.integrals(np.sum(g * motion.v, axis=2))
-
-
-def _simplex(start: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """A simplex around the worst motion: random directions, as only a few tries are made."""
-    return np.concatenate([start[None], start + 0.3 * rng.standard_normal((start.size, start.size))])

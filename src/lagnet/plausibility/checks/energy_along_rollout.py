@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from lagnet.plausibility.check import Check, Finding, NotApplicable
 from lagnet.plausibility.energy import energy_scale, kinetic_energy
+from lagnet.plausibility.search import closer_and_closer
 from lagnet.plausibility.subject import Subject
 
 FALLS, DURATION, FRAMES = 6, 0.5, 6  # falls at once, [s], moments at which energy is looked at
@@ -34,15 +35,11 @@ class EnergyAlongRollout(Check):
         starts = self._starts(subject)
         drift = self._drift(subject, starts)
         worst = int(np.argmax(drift))
-        # The local search: falls that begin close to the worst, closer each time.
-        rng, value, start = np.random.default_rng([subject.seed, 9]), float(drift[worst]), starts[worst]
-        near = np.clip(start + 0.1 * rng.standard_normal((FALLS, start.size)), -1, 1)
-        again = self._drift(subject, near)
-        if again.max() > value:
-            value, start = float(again.max()), near[int(np.argmax(again))]
-        q, v = _decoded(subject, start[None])
+        rng = np.random.default_rng([subject.seed, 9])
+        found = closer_and_closer(lambda x: self._drift(subject, x), starts[worst], float(drift[worst]), rng)
+        q, v = _decoded(subject, found.point[None])
         where = {"q": q[0].tolist(), "v": v[0].tolist()}
-        return Finding(value, where, f"energy of a free fall of {DURATION} s drifts by this share a second")
+        return Finding(found.value, where, f"energy of a free fall of {DURATION} s drifts by this share a second")
 
     @staticmethod
     def _starts(subject: Subject) -> np.ndarray:
@@ -86,15 +83,16 @@ class _Fall:
         if self.calls > MOST_CALLS:
             raise _TooManyCalls
         q, v, _, _ = self.split(state)
-        g = self.subject.gravity_torque(q)
+        lifted, taken = np.zeros(self.count), np.zeros(self.count)
+        if not self.subject.offers("potential_energy"):
+            lifted = np.sum(self.subject.gravity_torque(q) * v, axis=1)
         if self.subject.offers("forward_dynamics"):
             a = self.subject.call("forward_dynamics", q, v, np.zeros_like(q))
             taken = np.sum(self.subject.residual(q, v, a) * v, axis=1)
         else:
-            bias = self.subject.coriolis_torque(q, v) + g
+            bias = self.subject.coriolis_torque(q, v) + self.subject.gravity_torque(q)
             a = np.linalg.solve(self.subject.mass_matrix(q), -bias[..., None])[..., 0]
-            taken = np.zeros(self.count)
-        return np.concatenate([v.ravel(), a.ravel(), taken, np.sum(g * v, axis=1)])
+        return np.concatenate([v.ravel(), a.ravel(), taken, lifted])
 
     def drift(self, states: np.ndarray) -> np.ndarray:
         kinetic, kept, lifts = [], [], []

@@ -34,5 +34,8 @@ class GravityIsGradient(Check):
         off = np.abs(gradient[0] - gradient[0].T) / scale
         i, j = (int(k) for k in np.unravel_index(np.argmax(off), off.shape))
         names = subject.joints
-        detail = f"∂g({names[j]})/∂q({names[i]}) = {gradient[0, i, j]:.6g} but ∂g({names[i]})/∂q({names[j]}) = "
-        return Finding(worst.value, where, detail + f"{gradient[0, j, i]:.6g} N m/rad")
+        units = [f"{subject.unit('tau', m)}/{subject.unit('q', k)}" for m, k in ((j, i), (i, j))]
+        detail = (
+            f"∂g({names[j]})/∂q({names[i]}) = {gradient[0, i, j]:.6g} {units[0]} and ∂g({names[i]})/∂q({names[j]}) = "
+        )
+        return Finding(worst.value, where, detail + f"{gradient[0, j, i]:.6g} {units[1]}")

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.search import worst_configuration
 from lagnet.plausibility.subject import Subject
 
 SAMPLES, ALONE = 32, 8  # rows compared in a batch, and of these alone (a compiled model sees copies of the row)
+COMPANY = 16  # rows put before those of the local search, which move them to other neighbours
 
 
 class IndependentSamples(Check):
-    """Compares each of the four calls on single rows and on a shuffled batch."""
+    """Compares each of the four calls on single rows, on a shuffled batch, and among other rows."""
 
     name = "independent_samples"
     title = "a sample's torque depends on that sample alone"
@@ -33,9 +35,25 @@ class IndependentSamples(Check):
             missed = np.maximum(missed, self._size(batch - first, scale))
             missed[:ALONE] = np.maximum(missed[:ALONE], self._size(alone - first[:ALONE], scale))
         k = int(np.argmax(missed))
-        where = {"q": q[k].tolist(), "v": v[k].tolist(), "a": a[k].tolist()}
-        return Finding(
-            float(missed[k]), where, "the same sample alone or among others differs by a share of its torque"
+        value, where = float(missed[k]), {"q": q[k].tolist(), "v": v[k].tolist(), "a": a[k].tolist()}
+        company = subject.random(COMPANY, salt=15)
+        worst, place = worst_configuration(subject, "qva", lambda *x: self._in_company(subject, x, company))
+        if worst.value > value:
+            value, where = worst.value, place
+        return Finding(value, where, "the same sample alone or among others differs by a share of its torque")
+
+    def _in_company(
+        self, subject: Subject, motion: tuple[np.ndarray, ...], company: tuple[np.ndarray, ...]
+    ) -> np.ndarray:
+        """What other rows in the batch change, shape (n,)."""
+        together = [np.concatenate([others, own]) for others, own in zip(company, motion, strict=True)]
+        calls = zip(self._calls(subject, *motion), self._calls(subject, *together), strict=True)
+        return np.max(
+            [
+                self._size(subject.call(name, *crowd)[COMPANY:] - subject.call(name, *own), scale)
+                for (name, own, scale), (_, crowd, _) in calls
+            ],
+            axis=0,
         )
 
     @staticmethod

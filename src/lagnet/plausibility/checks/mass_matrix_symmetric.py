@@ -35,5 +35,5 @@ class MassMatrixSymmetric(Check):
         H = subject.mass_matrix(np.array([where["q"]]))[0]
         i, j = (int(k) for k in np.unravel_index(np.argmax(np.abs((H - H.T) / scale)), H.shape))
         names = subject.joints
-        detail = f"H({names[i]}, {names[j]}) = {H[i, j]:.6g} but H({names[j]}, {names[i]}) = {H[j, i]:.6g} kg m²"
+        detail = f"H({names[i]}, {names[j]}) = {H[i, j]:.6g} and H({names[j]}, {names[i]}) = {H[j, i]:.6g} kg m²"
         return Finding(worst.value, where, detail)

@@ -12,7 +12,11 @@ ROUND = 64  # points of a turn; the mean of a trigonometric polynomial of degree
 
 
 class PeriodicJoints(Check):
-    """Shifts each revolute joint by 2π, and averages its gravity torque over the turn."""
+    """Shifts each revolute joint by 2π, and averages its gravity torque over the turn.
+
+    The work of a turn needs no search: it is the same wherever the other joints are, if gravity torque is a gradient
+    and periodic.
+    """
 
     name = "periodic_joints"
     title = "revolute joints are periodic"
@@ -34,10 +38,10 @@ class PeriodicJoints(Check):
         q, v = np.array([where["q"]]), np.array([where["v"]])
         joint = turning[int(np.argmax([self._shift(subject, q, v, j)[0] for j in turning]))]
         value, detail = worst.value, f"a full turn of {subject.joints[joint]} changes H, c or g"
-        pumped, which = self._work(subject, turning)
+        pumped, which, at = self._work(subject, turning)
         if pumped > value:
             value, detail = pumped, f"gravity torque of {subject.joints[which]} does work over a full turn"
-            where = {"joint": subject.joints[which]}
+            where = {"joint": subject.joints[which], "q": at}
         return Finding(value, where, detail)
 
     @staticmethod
@@ -58,14 +62,14 @@ class PeriodicJoints(Check):
         )
 
     @staticmethod
-    def _work(subject: Subject, turning: list[int]) -> tuple[float, int]:
-        """Mean gravity torque of a joint over its own turn, others held at random places; the worst joint."""
+    def _work(subject: Subject, turning: list[int]) -> tuple[float, int, list[float]]:
+        """Mean gravity torque of a joint over its own turn, others held at random places; the worst joint and place."""
         rest, _, _ = subject.random(8, salt=5)
         found = []
         for joint in turning:
             q = np.repeat(rest, ROUND, axis=0)
             q[:, joint] = np.tile(2 * np.pi * np.arange(ROUND) / ROUND, len(rest))
             mean = subject.gravity_torque(q)[:, joint].reshape(len(rest), ROUND).mean(axis=1)
-            found.append(np.abs(mean).max() / subject.torque_scale[joint])
-        worst = int(np.argmax(found))
-        return float(found[worst]), turning[worst]
+            found.append(np.abs(mean) / subject.torque_scale[joint])
+        worst, place = (int(k) for k in np.unravel_index(np.argmax(found), np.shape(found)))
+        return float(found[worst][place]), turning[worst], rest[place].tolist()

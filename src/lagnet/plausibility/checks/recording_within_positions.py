@@ -27,7 +27,9 @@ class RecordingWithinPositions(Check):
         for recording in subject.recordings:
             beyond = np.maximum(recording.q - upper, lower - recording.q) / width
             row, joint = (int(i) for i in np.unravel_index(np.argmax(beyond), beyond.shape))
-            detail = f"{subject.joints[joint]} is at {recording.q[row, joint]:.4g}, allowed is "
+            detail = (
+                f"{subject.joints[joint]} is at {recording.q[row, joint]:.4g} {subject.unit('q', joint)}, allowed is "
+            )
             detail += f"{lower[joint]:.4g} … {upper[joint]:.4g}; beyond by this share of the range"
             spot = place(subject, recording, row, joint)
             found.append(Finding(max(float(beyond[row, joint]), 0.0), spot, detail))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lagnet.decomposition.offers import offers
 from lagnet.plausibility.bodies import Body, body, moving_bodies
 from lagnet.plausibility.check import Check, Finding, NotApplicable
 from lagnet.plausibility.subject import Subject
@@ -21,7 +22,7 @@ class ReferenceBodies(Check):
         return 1e-9
 
     def find(self, subject: Subject) -> Finding:
-        if subject.reference is None or not hasattr(subject.reference, "inertial_parameters"):
+        if subject.reference is None or not offers(subject.reference, "inertial_parameters"):
             raise NotApplicable("no reference made of bodies was given")
         own = moving_bodies(subject)
         rows = np.asarray(subject.reference.inertial_parameters(), dtype=float)

@@ -20,6 +20,6 @@ class ReferenceResidual(Check):
         return term_limit(subject)
 
     def find(self, subject: Subject) -> Finding:
-        if not has_residual(subject):
+        if subject.reference is not None and not has_residual(subject):
             raise NotApplicable("the reference sets no residual apart")
         return compare(subject, "residual")

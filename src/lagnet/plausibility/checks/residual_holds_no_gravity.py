@@ -25,6 +25,8 @@ class ResidualHoldsNoGravity(Check):
     def find(self, subject: Subject) -> Finding:
         if not subject.offers("residual_torque"):
             raise NotApplicable("the model sets no residual apart")
+        if not subject.residual_present.any():
+            raise NotApplicable("the residual is zero")
         if getattr(subject.model, "effects", ()):
             raise NotApplicable("the residual is made of named effects, of which springs and gains do hold the arm")
         q, _, _ = subject.random(SAMPLES, salt=11)
