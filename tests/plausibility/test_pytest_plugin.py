@@ -65,6 +65,13 @@ def test_model_of_the_command_line_is_one_test_a_check(tmp_path: Path):
     assert told["reference_total"]["lagnet_status"] == "pass"
 
 
+def test_vertical_base_is_checked_where_asked_for(tmp_path: Path):
+    for asked, status in (((), "not_applicable"), (("--lagnet-vertical-base",), "pass")):
+        done = run(tmp_path, "--lagnet-model", "ur5", *asked, "-k", "base_angle", "--junitxml=out.xml")
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert properties(tmp_path / "out.xml")["base_angle_independence"]["lagnet_status"] == status
+
+
 def test_faulty_model_of_the_command_line_fails_with_the_place(tmp_path: Path):
     done = run(tmp_path, "--lagnet-model", "finger_edu")
     assert done.returncode == 1

@@ -24,7 +24,7 @@ def command(
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
     vertical_base: Annotated[
-        bool, typer.Option("--vertical-base", help="The first axis is vertical: its angle must not matter.")
+        bool, typer.Option("--vertical-base", help="The first axis is vertical: check that its angle does not matter.")
     ] = False,
     limit: Annotated[
         list[str] | None, typer.Option(help="Limit of your own, as NAME=VALUE in the unit of the check; repeatable.")

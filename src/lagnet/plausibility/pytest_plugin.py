@@ -2,7 +2,8 @@
 
 Two ways in:
 
-- `pytest --lagnet-model DIR_OR_ROBOT [--lagnet-reference ROBOT]` adds one test a check to whatever else is collected.
+- `pytest --lagnet-model DIR_OR_ROBOT [--lagnet-reference ROBOT] [--lagnet-vertical-base]` adds one test a check to
+  whatever else is collected.
 - In a test file, subclass `PlausibilityTests` and define `model`, or define a fixture `lagnet_model` and use
   `lagnet_check` in a test of your own; `@pytest.mark.lagnet(limits={...}, skip=[...])` sets limits.
 
@@ -34,6 +35,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--lagnet-reference", metavar="DIR_OR_ROBOT", help="a model that is believed, compared term by term"
     )
+    group.addoption(
+        "--lagnet-vertical-base", action="store_true", help="its first axis is vertical: the angle must not matter"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -48,7 +52,8 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
         return
     from lagnet.plausibility.checks import CHECK_NAMES
 
-    shared = _FromCommandLine(spec, config.getoption("--lagnet-reference"))
+    upright = bool(config.getoption("--lagnet-vertical-base"))
+    shared = _FromCommandLine(spec, config.getoption("--lagnet-reference"), upright)
     suite = ModelUnderTest.from_parent(session, name=f"lagnet[{spec}]", nodeid=f"lagnet[{spec}]")
     items.extend(CheckItem.from_parent(suite, name=name, shared=shared) for name in CHECK_NAMES)
 
@@ -86,16 +91,18 @@ class CheckItem(pytest.Item):
 class _FromCommandLine:
     """Loads model and reference once for all checks, when the first of them runs."""
 
-    def __init__(self, spec: str, reference: str | None):
-        self.spec, self.reference, self._subject = spec, reference, None
+    def __init__(self, spec: str, reference: str | None, vertical_base: bool):
+        self.spec, self.reference, self.vertical_base, self._subject = spec, reference, vertical_base, None
 
     def subject(self) -> Any:
         if self._subject is None:
             from lagnet.models.loading import load_any
+            from lagnet.plausibility.settings import CheckSettings
             from lagnet.plausibility.subject import Subject
 
             reference = load_any(self.reference) if self.reference else None
-            self._subject = Subject(load_any(self.spec), reference)
+            settings = CheckSettings(vertical_base=self.vertical_base)
+            self._subject = Subject(load_any(self.spec), reference, settings=settings)
         return self._subject
 
 

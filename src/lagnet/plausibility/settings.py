@@ -13,7 +13,7 @@ class CheckSettings:
     Args:
         limits: limit by name of check, in the check's unit.
         skip: names of checks that are left out.
-        vertical_base: the first axis is vertical, so that its angle must not matter.
+        vertical_base: the first axis is vertical, so that its angle must not matter; the check of it is made only then.
         samples: random configurations that each check looks at before it searches.
         starts: worst samples from which a local search for a violation begins.
         iterations: steps of each local search.

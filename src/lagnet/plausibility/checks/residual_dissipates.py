@@ -9,11 +9,12 @@ from lagnet.plausibility.search import worst_configuration
 from lagnet.plausibility.subject import Subject
 
 SAMPLES = 1024
-NEGLIGIBLE = 1e-9  # of the torque: less than this is no residual
 
 
 class ResidualDissipates(Check):
-    """ε is torque that the motors must add, so that friction has ε·v > 0: power that the arm loses.
+    """ε is torque that the motors must add, so that friction has ε·v ≥ 0: power that the arm loses.
+
+    Where ε is counted the other way, as the torque that the residual exerts on the arm, the same statement is ε·v ≤ 0.
 
     What ε has in common at v and −v (gravity, offsets, inertia) does no work over a cycle and is left out: only the
     part that turns with the direction of motion is judged. Its worst place is searched and told, but a joint fails by
@@ -22,7 +23,10 @@ class ResidualDissipates(Check):
 
     name = "residual_dissipates"
     title = "the residual torque takes energy out"
-    meaning = "The residual drives the arm on average: friction that pushes, which no passive mechanism does."
+    meaning = (
+        "The residual drives the arm on average, as no passive mechanism does: ε is torque that the motors must add, "
+        "so friction has ε·v ≥ 0, and the torque −ε that it exerts on the arm has power ≤ 0."
+    )
     justification = "Dissipation is not negative; 1e-9 is rounding. 1 is pure friction, −1 pure drive."
     at_least = True
 
@@ -32,11 +36,9 @@ class ResidualDissipates(Check):
     def find(self, subject: Subject) -> Finding:
         if not subject.offers("residual_torque"):
             raise NotApplicable("the model sets no residual apart")
-        q, v, a = subject.random(SAMPLES, salt=10)
-        residual = subject.residual(q, v, a)
-        present = np.sqrt(np.mean(residual**2, axis=0)) > NEGLIGIBLE * subject.torque_scale
-        if not present.any():
+        if not (present := subject.residual_present).any():
             raise NotApplicable("the residual is zero")
+        q, v, a = subject.random(SAMPLES, salt=10)
         power = _power(subject, q, v, a)
         total, size = power.sum(axis=0), np.abs(power).sum(axis=0)
         share = np.where(present & (size > 0), total / np.where(size > 0, size, 1.0), 1.0)
@@ -45,7 +47,7 @@ class ResidualDissipates(Check):
         drives = float(np.mean(power[:, joint] < 0))
         detail = (
             f"residual of {subject.joints[joint]} drives in {100 * drives:.0f} % of the samples, "
-            f"with up to {max(worst.value, 0.0):.3g} W; its net share of the power exchanged is"
+            f"with up to {max(worst.value, 0.0):.3g} W; net share of the power ε·v that it takes out"
         )
         return Finding(float(share[joint]), {"joint": subject.joints[joint], **where}, detail)
 
