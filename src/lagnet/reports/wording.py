@@ -8,11 +8,11 @@ import re
 from markupsafe import Markup, escape
 
 LONGEST_WHOLE_NAME = 24
-PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "lugre": "LuGre", "dahl": "Dahl"}
+PROPER = {"coriolis": "Coriolis", "coulomb": "Coulomb", "stribeck": "Stribeck", "lugre": "LuGre", "dahl": "Dahl"}
 
 
 def effect_words(name: str) -> str:
-    """A name of the catalogue in words: stribeck_friction becomes Stribeck friction."""
+    """A name of the catalogue or of a term in words: stribeck_friction becomes Stribeck friction."""
     return " ".join(PROPER.get(word, word) for word in name.split("_"))
 
 

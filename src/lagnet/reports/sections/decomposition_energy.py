@@ -24,7 +24,7 @@ def build(parts: Decomposition) -> Section:
     flows = [
         _line(line, energies.measured_power, "measured torque", "measured"),
         _line(line, energies.model_power, "model torque", "corrected"),
-        _line(line, energies.residual_power, "residual", "series-2"),
+        _line(line, energies.residual_power, "taken out by the residual", "series-2"),
     ]
     figures = [_figure("energy", stores, "energy", "J"), _figure("power", flows, "power", "W")]
     clock = parts.time, parts.trajectory

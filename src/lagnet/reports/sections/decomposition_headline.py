@@ -6,7 +6,7 @@ import numpy as np
 
 from lagnet.decomposition.decompose import Decomposition
 from lagnet.reports.page import Section, section
-from lagnet.reports.wording import percent
+from lagnet.reports.wording import effect_words, percent
 
 
 def build(parts: Decomposition) -> Section:
@@ -16,7 +16,7 @@ def build(parts: Decomposition) -> Section:
     residual, error = parts.shares["residual"], parts.total_error.nmse
     most, worst = int(np.argmax(residual)), int(np.argmax(error))
     tiles = [
-        (percent(shares[largest]), f"of the torque is {largest} torque, on average over the joints"),
+        (percent(shares[largest]), f"of the torque is {effect_words(largest)} torque, on average over the joints"),
         (percent(max(float(residual[most]), 0.0)), f"is residual on {parts.joints[most]}, the joint with most of it"),
         (
             percent(float(error[worst])),
@@ -29,5 +29,10 @@ def build(parts: Decomposition) -> Section:
             key=lambda found: parts.term_errors[found[0]].nmse[found[1]],
         )
         value = float(parts.term_errors[name].nmse[joint])
-        tiles.append((percent(value), f"error (nMSE) of {name} torque of {parts.joints[joint]} against the reference"))
+        tiles.append(
+            (
+                percent(value),
+                f"error (nMSE) of {effect_words(name)} torque of {parts.joints[joint]} against the reference",
+            )
+        )
     return section("decomposition_headline", "", tiles=tiles, differentiated=parts.motion_from != "recorded")

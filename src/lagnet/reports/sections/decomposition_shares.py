@@ -5,7 +5,7 @@ from __future__ import annotations
 from lagnet.decomposition.decompose import Decomposition
 from lagnet.reports.figures import Figure, axis, colour, names_axis, plain
 from lagnet.reports.page import Section, section
-from lagnet.reports.wording import percent
+from lagnet.reports.wording import effect_words, percent
 
 ROLES = {"inertial": "series-1", "coriolis": "series-4", "gravity": "series-3", "residual": "series-2"}
 
@@ -15,9 +15,9 @@ def build(parts: Decomposition) -> Section:
     names = [plain(joint) for joint in parts.joints]
     traces = [
         {
-            "type": "bar", "orientation": "h", "y": names, "x": share.tolist(), "name": name,
+            "type": "bar", "orientation": "h", "y": names, "x": share.tolist(), "name": effect_words(name),
             "marker": {"color": colour(ROLES[name])}, "text": [percent(float(x)) for x in share],
-            "textposition": "none", "hovertemplate": f"{name} %{{x:.1%}}<extra></extra>",
+            "textposition": "none", "hovertemplate": f"{effect_words(name)} %{{x:.1%}}<extra></extra>",
         }
         for name, share in parts.shares.items()
     ]  # fmt: skip

@@ -10,6 +10,7 @@ from lagnet.decomposition.decompose import Decomposition
 from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
 from lagnet.reports.page import Section, section
 from lagnet.reports.timeline import Timeline, timeline
+from lagnet.reports.wording import effect_words
 
 SHOWN = ("total", "inertial", "coriolis", "gravity", "residual")
 PAGE_POINTS = 40_000  # of all lines of the page: keeps it under a few megabytes
@@ -54,8 +55,10 @@ def _figure(parts: Decomposition, line: Timeline, i: int, name: str, unit: str) 
     for trace in traces[1:]:
         trace["x"] = SAME_X
     traces = band + traces
-    layout = {"xaxis": axis("time, motions laid end to end", "s"), "yaxis": axis(name, unit), "hovermode": "x"}
-    return Figure(f"joint-{i}-{name}", traces, f"{name} torque of {parts.joints[i]} over time", layout, 260)
+    words = effect_words(name)
+    torque = axis(words, unit, exponentformat="power")
+    layout = {"xaxis": axis("time, motions laid end to end", "s"), "yaxis": torque, "hovermode": "x"}
+    return Figure(f"joint-{i}-{name}", traces, f"{words} torque of {parts.joints[i]} over time", layout, 260)
 
 
 def _line(line: Timeline, values: np.ndarray, words: str, role: str, width: float) -> Trace:
