@@ -11,7 +11,7 @@ import numpy as np
 from lagnet._version import __version__
 from lagnet.diagnosis.leftover import ABOVE, power_of, stacked
 from lagnet.diagnosis.localisation import locate
-from lagnet.diagnosis.passing_words import in_spells, passing_effects, spell_warnings, spells_in_fit
+from lagnet.diagnosis.passing_words import changes_in_time, passing_effects, spells_in_fit, told_in_time
 from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.rivals import Contest
 from lagnet.diagnosis.verdict import (
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
 
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
-MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is left is said to depend on time
 
 
 def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
@@ -57,7 +56,7 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
         unexplained=tuple(_unexplained(inquiry, j) for j in range(problem.n_dof)),
         fit=tuple(_fit(inquiry, j) for j in range(problem.n_dof)),
         abstentions=_abstentions(inquiry),
-        warnings=(*dict.fromkeys(w for r in (*fit, *held) for w in r.warnings), *spell_warnings(inquiry, fit, held)),
+        warnings=(*dict.fromkeys(w for r in (*fit, *held) for w in r.warnings), *told_in_time(inquiry, fit, held)),
     )
 
 
@@ -140,7 +139,7 @@ def _unexplained(inquiry: Inquiry, joint: int) -> Unexplained:
     before, noise = power_of(*stacked(problem, problem.holdout), joint), float(inquiry.noise[joint] ** 2)
     share = float(np.clip(max(0.0, left.power - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if left.above else 0.0
     depends_on = left.ceiling.depends_on
-    if left.above and "time" not in depends_on and in_spells(inquiry, inquiry.after.holdout[0][:, joint]) > MOSTLY:
+    if left.above and "time" not in depends_on and changes_in_time(inquiry, joint):
         depends_on = ("time", *depends_on)
     formula = left.shape.formula if left.shape else None
     return Unexplained(problem.joints[joint], left.above, share, depends_on, formula)

@@ -13,6 +13,7 @@ from lagnet.diagnosis.adequacy import withdraw
 from lagnet.diagnosis.arm_search import Found, search_arm
 from lagnet.diagnosis.compose import compose_verdict
 from lagnet.diagnosis.curves import collect_evidence
+from lagnet.diagnosis.drift import Drift, find_drifts
 from lagnet.diagnosis.equal_in_motion import tie_equals
 from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
@@ -31,7 +32,7 @@ from lagnet.diagnosis.rivals import Contest, hold_contests
 from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.sharpness import sharpen
-from lagnet.diagnosis.spells import Spell
+from lagnet.diagnosis.spells import Spell, set_aside
 from lagnet.diagnosis.unjudged import contests_with_unjudged
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
@@ -98,14 +99,14 @@ class Inquiry:
     spells: tuple[Spell, ...] = ()
 
     @property
-    def standing(self) -> Standing:
-        """What the next recording is planned from."""
-        return Standing(self.problem, self.fit, self.library, self.found, self.contests, self.refit.effects)
-
-    @property
     def effects(self) -> tuple[NamedEffect, ...]:
         """What lasts and what passes."""
         return (*self.refit.effects, *(p.effect for p in self.passing))
+
+    @cached_property
+    def drifts(self) -> tuple[Drift, ...]:
+        """Friction that changes over a recording."""
+        return find_drifts(set_aside(self.problem, self.spells), self.effects)
 
     @cached_property
     def after(self) -> Leftover:
@@ -116,6 +117,11 @@ class Inquiry:
     def leftovers(self) -> tuple[JointLeftover, ...]:
         """What is left at each joint."""
         return joint_leftovers(self, self.after)
+
+    @property
+    def standing(self) -> Standing:
+        """What the next recording is planned from."""
+        return Standing(self.problem, self.fit, self.library, self.found, self.contests, self.refit.effects)
 
 
 def diagnose(

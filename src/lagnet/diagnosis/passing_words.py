@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lagnet.diagnosis.drift import Drift
 from lagnet.diagnosis.passing import Passing
 from lagnet.diagnosis.spells import Spell
 from lagnet.diagnosis.verdict import EffectEvidence, EffectFound, NamedParameter
@@ -17,6 +18,8 @@ from lagnet.recordings.recording import Recording
 
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
+
+MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is left is said to depend on time
 
 
 def passing_effects(inquiry: Inquiry, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
@@ -38,9 +41,19 @@ def _effect(passing: Passing, recording: str) -> EffectFound:
     return EffectFound(law.name, None, status, fit.tied, parameters, evidence, words, interval, recording)
 
 
-def spell_warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
-    """A line on every interval that has no name."""
-    return tuple(_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in inquiry.spells)
+def told_in_time(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    """A line on every interval that has no name, and on every friction that drifts."""
+    spells = [_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in inquiry.spells]
+    drifts = [_drifting(d, inquiry.problem.joints[d.joint], _name(fit, d.recording)) for d in inquiry.drifts]
+    return (*spells, *drifts)
+
+
+def _drifting(drift: Drift, joint: str, recording: str) -> str:
+    way, levels = "falls" if drift.change < 0 else "rises", ", ".join(f"{100.0 * x:.3g}" for x in drift.levels)
+    return (
+        f"{joint}: friction {way} by {100.0 * abs(drift.change):.2g} ± {196.0 * drift.error:.1g} % over {recording} "
+        f"({levels} % of the fitted friction in its quarters), as when a joint warms up; it is fitted as constant"
+    )
 
 
 def _name(recordings: Sequence[Recording], index: int, held_out: bool = False) -> str:
@@ -61,7 +74,13 @@ def spells_in_fit(inquiry: Inquiry) -> tuple[tuple[int, float, float], ...]:
     return (*named, *((s.recording, s.start, s.end) for s in inquiry.spells if not s.held_out))
 
 
-def in_spells(inquiry: Inquiry, rest: np.ndarray) -> float:
+def changes_in_time(inquiry: Inquiry, joint: int) -> bool:
+    """Whether what is left at a joint depends on time: its friction drifts, or most of it lies in a spell."""
+    drifts = any(d.joint == joint for d in inquiry.drifts)
+    return drifts or _in_spells(inquiry, inquiry.after.holdout[0][:, joint]) > MOSTLY
+
+
+def _in_spells(inquiry: Inquiry, rest: np.ndarray) -> float:
     """Share of a joint's held-out residual power, shape (n,), that lies in intervals without a name."""
     held = [s for s in inquiry.spells if s.held_out]
     inside = [
