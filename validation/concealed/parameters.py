@@ -7,8 +7,13 @@ import numpy as np
 from validation.concealed.fair_names import Claim
 from validation.plants.spec import Hidden
 
-VECTORS = (("cx", "cy", "cz"), ("theta_1", "theta_2"))  # a small component has no relative error of its own
-ANGLES = ("q0", "phase")  # their zero means nothing: errors in radians
+VECTORS = (
+    ("cx", "cy", "cz"),
+    ("theta_1", "theta_2"),
+    ("Fx", "Fy", "Fz"),
+    ("px", "py", "pz"),
+)  # a small component has no relative error of its own
+ABSOLUTE = ("q0", "phase", "t0", "t1")  # their zero means nothing: errors in radians and seconds
 NOT_THE_SAME = {"joint_elasticity": ("damping", "rotor"), "backlash": ("K", "damping", "rotor")}  # the plant's own
 
 
@@ -24,7 +29,7 @@ def errors_of(hidden: Hidden, claim: Claim) -> tuple[dict[str, float], dict[str,
         low, high = (bound - turn for bound in given["ci95"])
         covered[f"{hidden.effect}.{name}"] = bool(low <= true <= high)
         if not any(name in group for group in VECTORS):
-            scale = 1.0 if name in ANGLES else max(abs(true), 1e-12)
+            scale = 1.0 if name in ABSOLUTE else max(abs(true), 1e-12)
             errors[f"{hidden.effect}.{name}"] = abs(given["value"] - turn - true) / scale
     for group in VECTORS:
         if all(name in shared for name in group):

@@ -13,6 +13,7 @@ import numpy as np
 
 from validation.plants.arm.bodies import PinocchioBodies
 from validation.plants.arm.controllers import Controller
+from validation.plants.arm.events import Grasp
 from validation.plants.arm.gears import Gear
 from validation.plants.arm.pulls import Pull
 from validation.plants.arm.surfaces import Surface
@@ -30,6 +31,7 @@ class Arm:
         bodies: the true ones.
         engine: PyBullet's copy of them, where it integrates the links; None: the loop does.
         armature: shape (dof,), inertia that the motors add [kg m²].
+        grasps: loads that the bodies carry for a while; not where PyBullet integrates.
         offset: shape (dof,), true angle less what the encoder says [rad].
     """
 
@@ -40,6 +42,12 @@ class Arm:
     pulls: tuple[tuple[int, Pull], ...] = ()
     surfaces: tuple[tuple[int, Surface], ...] = ()
     gears: tuple[tuple[int, Gear], ...] = ()
+    grasps: tuple[Grasp, ...] = ()
+
+    def bodies_at(self, t: float) -> PinocchioBodies:
+        """The bodies that move at time t [s]."""
+        held = [grasp.bodies for grasp in self.grasps if grasp.start <= t < grasp.end]
+        return held[0] if held else self.bodies
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +139,8 @@ class _State:
             pull.add(t, q, v, felt, slope)
             own[number] += before - felt
         force = np.zeros(self.x.size)
-        bias = arm.bodies.bias(self.x[links], self.v_mid[links])
+        bodies = arm.bodies_at(t)
+        bias = bodies.bias(self.x[links], self.v_mid[links])
         force[links] = -bias
         force[self.side] += felt + slope * self.step / 2 * self.a[self.side]
         for e, (_, gear) in enumerate(arm.gears):
@@ -139,7 +148,7 @@ class _State:
             push = gear.torque(self.x[m] - self.x[j], self.v_mid[m] - self.v_mid[j])
             force[j] += push
             force[m] -= push
-        self.M[links, links] = arm.bodies.inertia(self.x[links])
+        self.M[links, links] = bodies.inertia(self.x[links])
         A = self.M.copy()
         A[self.side, self.side] += arm.armature + slope * self.step / 2
         a = self._solve(t, q, A, force, own)

@@ -7,12 +7,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from validation.plants.arm.bodies import PinocchioBodies
+from validation.plants.arm.events import Grasp, Push
 from validation.plants.arm.gears import Gear
 from validation.plants.arm.pulls import Drag, Field, MaxwellSlip, Pull
 from validation.plants.arm.surfaces import Loaded, Plain, Surface
-from validation.plants.body import BodySettings, Payload, joint_names
+from validation.plants.body import BodySettings, Payload, arm_joints, joint_names
 from validation.plants.catalogue.plan import Plan
+from validation.plants.catalogue.scale import LEAD
 from validation.plants.catalogue.unlisted import UNLISTED
+from validation.plants.spec import Hidden
 
 SLIDERS = 6
 
@@ -34,6 +38,7 @@ class Parts:
     pulls: list[tuple[int, Pull]] = field(default_factory=list)
     surfaces: list[tuple[int, Surface]] = field(default_factory=list)
     gears: list[tuple[int, Gear]] = field(default_factory=list)
+    grasps: list[Grasp] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         for name in ("armature", "angle_offset", "offset", "delay"):
@@ -107,21 +112,25 @@ PHYSICS: dict[str, Put] = {
     "joint_elasticity": lambda p, i, j, name, x: p.gears.append((i, Gear(j, x["K"], x["damping"], x["rotor"]))),
     "backlash": lambda p, i, j, name, x: p.gears.append((i, Gear(j, x["K"], x["damping"], x["rotor"], x["h"]))),
 }
-"""How each name enters the plant. Kinds kept elsewhere, such as events, add theirs here."""
+"""How each name enters the plant."""
 
 
-def assemble(plan: Plan) -> Parts:
-    """All that a plan hides, put together.
+def assemble(plan: Plan, recording: int = 0) -> Parts:
+    """All that a plan hides in one of its recordings, put together.
 
     Raises:
         ValueError: a name without physics.
     """
     names = joint_names(plan.robot)
     parts = Parts(len(names))
-    for i, hidden in enumerate(plan.hidden):
+    lasting_first = sorted(enumerate(plan.hidden), key=lambda entry: "t0" in entry[1].values)
+    for i, hidden in lasting_first:
         j = -1 if hidden.joint is None else names.index(hidden.joint)
         kind = hidden.effect.removeprefix("unlisted:")
-        if kind != hidden.effect:
+        if "t0" in hidden.values:
+            if hidden.values["recording"] == recording:
+                _happen(parts, plan, i, hidden)
+        elif kind != hidden.effect:
             pulls, surfaces = UNLISTED[kind].build(j, len(names), hidden.values)
             parts.pulls += [(i, pull) for pull in pulls]
             parts.surfaces += [(i, surface) for surface in surfaces]
@@ -130,3 +139,17 @@ def assemble(plan: Plan) -> Parts:
         else:
             raise ValueError(f"no plant physics for {hidden.effect}; known: {', '.join(PHYSICS)}")
     return parts
+
+
+def _happen(parts: Parts, plan: Plan, i: int, hidden: Hidden) -> None:
+    """A load that is carried, or a push that acts, for a while: the clock of a run starts at its lead."""
+    x = hidden.values
+    start, end = x["t0"] + LEAD, x["t1"] + LEAD
+    if hidden.effect == "payload":
+        load = Payload(x["m"], (x["cx"], x["cy"], x["cz"]), x["radius"])
+        settings = BodySettings(load, parts.tilt, tuple(parts.links))
+        parts.grasps.append(Grasp(PinocchioBodies(plan.robot, settings), start, end))
+        return
+    force, point = (np.array([x[f"{letter}{axis}"] for axis in "xyz"]) for letter in "Fp")
+    joint = arm_joints(plan.robot)[-1]  # the name is of what the arm does to its surroundings
+    parts.pulls.append((i, Push(PinocchioBodies(plan.robot), joint, -force, point, start, end)))

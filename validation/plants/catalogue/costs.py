@@ -13,6 +13,7 @@ from validation.plants.body import BodySettings
 from validation.plants.catalogue.assemble import Parts
 from validation.plants.catalogue.measure import late, shown_torque
 from validation.plants.catalogue.plan import Plan
+from validation.plants.catalogue.scale import LEAD
 
 SEEN_BEHIND_A_GEAR = 15.0  # [Hz]: impacts of a gap are faster than any recording at 100 Hz resolves
 
@@ -48,7 +49,11 @@ def costs_of(plan: Plan, parts: Parts, run: TrueRun, nominal: PinocchioBodies) -
     gear = None
     for i, hidden in enumerate(plan.hidden):
         j = -1 if hidden.joint is None else nominal.joints.index(hidden.joint)
-        if i in run.own:
+        if "t0" in hidden.values and hidden.effect == "payload":
+            each[i] = _carried(plan, parts, (q, v, a), nominal)
+        elif "t0" in hidden.values and i not in run.own:
+            continue  # in another recording
+        elif i in run.own:
             each[i] = run.own[i][::every]
         elif hidden.effect in ("joint_elasticity", "backlash"):
             gear = i
@@ -108,6 +113,17 @@ def _cost(
         case "time_delay":
             return _only(q, j, (late(tau, parts.delay, plan.step_rate) - tau)[::every, j] * parts.gain[j])
     raise ValueError(f"no cost for {effect}")
+
+
+def _carried(plan: Plan, parts: Parts, motion: tuple, nominal: PinocchioBodies) -> np.ndarray:
+    """Of a load that is carried for a while."""
+    time = np.arange(motion[0].shape[0]) / plan.rate + LEAD
+    cost = np.zeros_like(motion[0])
+    for grasp in parts.grasps:
+        on = (grasp.start <= time) & (time < grasp.end)
+        without = PinocchioBodies(plan.robot, parts.body)
+        cost[on] = grasp.bodies.torque(*(x[on] for x in motion)) - without.torque(*(x[on] for x in motion))
+    return cost
 
 
 def _bodies(plan: Plan, settings: BodySettings, motion: tuple, nominal: PinocchioBodies) -> np.ndarray:

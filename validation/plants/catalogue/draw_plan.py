@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from validation.plants.body import arm_joints, joint_names
 from validation.plants.catalogue.calibrate import calibrated
-from validation.plants.catalogue.listed import DRY, GEARS, LISTED
+from validation.plants.catalogue.listed import DRY, GEARS, LISTED, NAMED, PASSING
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.scale import RIGID_RATE, OwnScale, own_scale, wanted_motions
 from validation.plants.catalogue.unlisted import UNLISTED
@@ -70,7 +71,8 @@ def draw_plan(seed: int, number: int, robots: tuple[str, ...] = ROBOTS) -> Plan:
         hidden = _behind(frame, rng)
     elif group == "unlisted":
         hidden = _unlisted(frame, rank, rng)
-    return Plan(**{**frame.__dict__, "hidden": hidden})
+    passing = any("t0" in h.values for h in hidden)  # PyBullet's copy of the bodies knows of no events
+    return replace(frame, hidden=hidden, engine="pinocchio" if passing else frame.engine)
 
 
 def _rank(number: int) -> int:
@@ -178,8 +180,8 @@ def draw_hidden(
         got = _clipped_size(kind, scale, j, wanted, values)
         if got < 0.99 * least:
             continue
-        name = None if kind in WHOLE_ARM else joint_names(plan.robot)[j]
-        hidden = Hidden(kind, name, {k: float(x) for k, x in values.items()}, got)
+        name = None if kind in WHOLE_ARM | PASSING else joint_names(plan.robot)[j]
+        hidden = Hidden(NAMED.get(kind, kind), name, {k: float(x) for k, x in values.items()}, got)
         sized = calibrated(plan, hidden, wanted) if kind in GEARS else hidden
         if sized is not None and sized.size >= 0.99 * least:
             return sized
@@ -189,7 +191,8 @@ def draw_hidden(
 def _clash(one: Hidden, other: Hidden) -> bool:
     """Whether two causes would be one under two names, or cannot be built together."""
     both = {one.effect, other.effect}
-    if both <= GEARS:
+    passing = "t0" in one.values or "t0" in other.values
+    if both <= GEARS or (passing and both & GEARS):
         return True
     if one.joint != other.joint:
         return False

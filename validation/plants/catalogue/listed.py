@@ -89,6 +89,27 @@ def saturation(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> Va
     return {"tau_max": high}
 
 
+def _while(duration: float, shortest: float, longest: float, rng: np.random.Generator) -> Values:
+    """An interval of one of the three fitted recordings [s]."""
+    length = rng.uniform(shortest, min(longest, 0.7 * duration))
+    start = rng.uniform(1.5, duration - length - 1.0)
+    return {"t0": start, "t1": start + length, "recording": float(rng.integers(3))}
+
+
+def contact(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> Values | None:
+    """A force of the size that the weight of a payload of that size has."""
+    force = rng.normal(size=3)
+    force *= 9.81 * size / s.payload_share / np.linalg.norm(force)
+    point = rng.uniform((-0.04, -0.04, 0.0), (0.04, 0.04, 0.12))
+    names = ("Fx", "Fy", "Fz", "px", "py", "pz")
+    return dict(zip(names, (*force, *point), strict=True)) | _while(s.duration, 1.5, 5.0, rng)
+
+
+def picked_up(s: OwnScale, j: int, size: float, rng: np.random.Generator) -> Values | None:
+    """A payload that is there for a while."""
+    return FIRST_SET["payload"](s, j, size, rng) | _while(s.duration, 5.0, 12.0, rng)
+
+
 BEYOND_FIRST_SET: dict[str, Draw] = {
     "load_dependent_friction": load_dependent,
     "torque_ripple": ripple,
@@ -98,6 +119,8 @@ BEYOND_FIRST_SET: dict[str, Draw] = {
     "backlash": backlash,
     "presliding_hysteresis": presliding,
     "saturation": saturation,
+    "contact_force": contact,
+    "picked_up_payload": picked_up,
 }
 LISTED: dict[str, Draw] = {**FIRST_SET, **BEYOND_FIRST_SET}
 DRY = {
@@ -107,4 +130,6 @@ DRY = {
     "load_dependent_friction",
     "presliding_hysteresis",
 }
+NAMED = {"picked_up_payload": "payload"}  # kinds that go by the name of another
+PASSING = {"contact_force", "picked_up_payload"}
 GEARS = {"joint_elasticity", "backlash"}

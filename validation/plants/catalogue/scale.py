@@ -28,6 +28,7 @@ class OwnScale(Scale):
         torques: shape (n, dof), rigid torque of the wanted motions [N m].
         flips: shape (dof,), share of the time that the torque spends on its rarer side.
         mean_inertia: shape (dof,), [kg m²].
+        duration: of a recording [s].
     """
 
     shift: np.ndarray
@@ -36,6 +37,7 @@ class OwnScale(Scale):
     torques: np.ndarray
     flips: np.ndarray
     mean_inertia: np.ndarray
+    duration: float
 
 
 def wanted_motions(
@@ -74,6 +76,7 @@ def own_scale(robot: str, motions: list[Reference]) -> OwnScale:
         torques=tau,
         flips=np.minimum(np.mean(tau > 0, axis=0), np.mean(tau < 0, axis=0)),
         mean_inertia=inertia,
+        duration=float(motions[0].time[-1]) - LEAD,
     )
 
 

@@ -32,10 +32,11 @@ def simulate(plan: Plan, folder: Path) -> tuple[Witness, Costs]:
         What the recordings can show of each hidden cause, and what each costs along the held-out one.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    parts, nominal = assemble(plan), PinocchioBodies(plan.robot)
+    nominal = PinocchioBodies(plan.robot)
     wanted = wanted_motions(plan.robot, plan.shapes, plan.seed, plan.speed_share, plan.duration, plan.step_rate)
     costs: list[Costs] = []
     for index, (name, motion) in enumerate(zip(plan.recordings, wanted, strict=True)):
+        parts = assemble(plan, index)
         true_run = run_plan(plan, parts, nominal, motion)
         rng = np.random.default_rng([plan.seed, index, 1])
         write_csv(folder / f"{name}.csv", record(plan, parts, true_run, rng))
@@ -59,6 +60,7 @@ def run_plan(plan: Plan, parts: Parts, nominal: PinocchioBodies, motion: Referen
         tuple(parts.pulls),
         tuple(parts.surfaces),
         tuple(parts.gears),
+        tuple(parts.grasps),
     )
     controller = CONTROLLERS[plan.controller](nominal, motion, _bandwidth(plan, parts, nominal, motion), step)
     true_run = run(arm, motion, controller, step)

@@ -31,7 +31,7 @@ class Sight:
 
     Args:
         share: rms of its torque over that of the joint's torque, at the joint where this is largest.
-        over_noise: rms of its torque over that of the raw noise, likewise.
+        over_noise: rms of its torque over that of the raw noise, likewise; of a passing cause, while it lasts.
         same_as: (name, joint) of laws whose torque is the same within a fifth of the noise.
         resembled_by: (name, joint) of laws that explain nine tenths of its power.
     """
@@ -80,11 +80,11 @@ def bear_witness(plan: Plan, costs: list[Costs], nominal: PinocchioBodies) -> Wi
     sights = []
     for i in range(len(plan.hidden)):
         cost = np.concatenate([c.each[i] for c in costs])
-        rms = np.sqrt(np.mean(cost**2, axis=0))
+        rms = np.sqrt(np.mean(_while_it_lasts(plan, i, cost) ** 2, axis=0))
         clear = _clear(plan, i, costs, nominal)
         thin = np.concatenate([c.each[i][::THIN] for c in costs])[clear] / noise
         same, near = [], []
-        for key, columns in laws.items():
+        for key, columns in laws.items() if "t0" not in plan.hidden[i].values else ():
             left = _left(thin, columns[clear] / noise[None, :, None])
             wider = key[0] in WIDER and key[0] != plan.hidden[i].effect
             if not wider and np.sqrt(np.mean(left**2, axis=0)).max() < SAME:
@@ -93,6 +93,11 @@ def bear_witness(plan: Plan, costs: list[Costs], nominal: PinocchioBodies) -> Wi
                 near.append(key)
         sights.append(Sight(float((rms / level).max()), float((rms / noise).max()), tuple(same), tuple(near)))
     return Witness(tuple(sights))
+
+
+def _while_it_lasts(plan: Plan, i: int, cost: np.ndarray) -> np.ndarray:
+    """The samples at which a passing cause acts; all of them for a lasting one."""
+    return cost[np.any(cost != 0, axis=1)] if "t0" in plan.hidden[i].values else cost
 
 
 def _clear(plan: Plan, i: int, costs: list[Costs], nominal: PinocchioBodies) -> np.ndarray:
