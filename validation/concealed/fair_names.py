@@ -18,6 +18,7 @@ from validation.plants.catalogue.witness import Sight, Witness
 from validation.plants.spec import Hidden
 
 LARGEST_TIE = 3  # names in a tie, the first included, that still count as an answer
+SHARED_TIME = 0.5  # of a passing cause and its claim
 FILTER_LAG = 3.0  # a claimed delay may be so many times that of the current filter
 
 
@@ -52,6 +53,16 @@ def how_named(hidden: Hidden, sight: Sight, claim: Claim) -> str:
     if claim.joint == hidden.joint and hidden.effect in claim.names:
         return "tied"
     return "same torque" if any((name, claim.joint) in sight.same_as for name in claim.names) else ""
+
+
+def _same_time(hidden: Hidden, claim: Claim) -> bool:
+    """Whether both last, or both pass and the times that they share are half of the times of either."""
+    if "t0" not in hidden.values or "t0" not in claim.parameters:
+        return "t0" not in hidden.values and "t0" not in claim.parameters
+    first = (hidden.values["t0"], hidden.values["t1"])
+    second = (claim.parameters["t0"]["value"], claim.parameters["t1"]["value"])
+    shared = min(first[1], second[1]) - max(first[0], second[0])
+    return shared >= SHARED_TIME * max(first[1] - first[0], second[1] - second[0])
 
 
 def match(plan: Plan, witness: Witness, claims: list[Claim]) -> dict[int, tuple[int, str]]:
