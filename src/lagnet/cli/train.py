@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from lagnet.training.settings import TrainingSettings
 
 INTERRUPTED = 3
 
@@ -21,6 +25,9 @@ def command(
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of initial weights and shuffling.")] = 0,
     minutes: Annotated[float | None, typer.Option(help="Wall-clock limit of the training.")] = None,
+    steps: Annotated[
+        int | None, typer.Option(help="Gradient steps; unlike minutes they give the same model again.")
+    ] = None,
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
@@ -28,14 +35,13 @@ def command(
         str | None, typer.Option(help="Comma-separated: continuous, revolute or prismatic for each joint.")
     ] = None,
     penalty: Annotated[
-        float | None, typer.Option(help="λ of eq. 12 for delan-ffnn; chosen on held-out samples where not given.")
+        float | None, typer.Option(help="λ of eq. 12: trains mechanics and ε of delan-ffnn together, not in stages.")
     ] = None,
 ) -> None:
     """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
     from lagnet.cli.console import say
     from lagnet.recordings.load import load_recording
-    from lagnet.training.settings import TrainingSettings
-    from lagnet.training.train import train
+    from lagnet.training.train import stage_files, train
 
     read = [load_recording(path, columns=columns) for path in recordings]
     judged = [load_recording(path, columns=columns) for path in holdout or []]
@@ -47,7 +53,7 @@ def command(
         seed=seed,
         holdout=judged or None,
         minutes=minutes,
-        training=TrainingSettings(penalty=penalty),
+        training=_how(steps, penalty),
         joint_types=types,
         checkpoint=checkpoint,
         progress=lambda report: say(report.line()) if report.step % 500 == 0 else None,
@@ -59,4 +65,13 @@ def command(
     if fit.stats.get("interrupted"):
         say("interrupted: the best model so far was kept; the same command goes on from there")
         raise typer.Exit(INTERRUPTED)
-    checkpoint.unlink(missing_ok=True)
+    for file in (checkpoint, *stage_files(checkpoint)):
+        file.unlink(missing_ok=True)
+
+
+def _how(steps: int | None, penalty: float | None) -> TrainingSettings:
+    """The defaults but for what was asked for; a λ weighs ε against torque while both are trained together."""
+    from lagnet.training.settings import TrainingSettings
+
+    settings = TrainingSettings() if steps is None else TrainingSettings(steps=steps)
+    return settings if penalty is None else replace(settings, penalty=penalty, separation="joint")

@@ -14,6 +14,7 @@ from lagnet.errors import ModelError
 
 ACTIVATIONS: dict[str, Callable] = {"silu": jax.nn.silu, "tanh": jnp.tanh, "softplus": jax.nn.softplus}
 LARGEST_WIDTH = 2048
+SMALL_START = 0.01  # power of the outputs at first: torque follows by derivatives of energies, which are much larger
 
 
 def check_widths(hidden: tuple[int, ...]) -> None:
@@ -85,7 +86,7 @@ def make_network(
     for layer, subkey in enumerate(keys):
         mask = visible(degrees[layer + 1], degrees[layer])
         inputs = np.maximum(mask.sum(axis=1, keepdims=True), 1)
-        gain = 1.0 if layer == len(keys) - 1 else 2.0
+        gain = SMALL_START if layer == len(keys) - 1 else 2.0
         draw = jax.random.normal(subkey, mask.shape) * np.sqrt(gain / inputs) * mask
         weights.append(draw)
     biases = tuple(jnp.zeros(len(units)) for units in degrees[1:])

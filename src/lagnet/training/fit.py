@@ -81,7 +81,7 @@ def fit(dynamics: AbstractDynamics, task: Task) -> Fitted:
                 run.advance()
         except KeyboardInterrupt:
             run.history.interrupted = True
-            run.keep()
+        run.keep()
         return run.result()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 
 @dataclass(frozen=True)
@@ -40,3 +40,13 @@ class History:
     kept_step: int = 0
     stopped_early: bool = False
     interrupted: bool = False
+
+    def followed_by(self, later: History) -> History:
+        """This training and one that went on from its result, counted through."""
+        done = self.reports[-1].step if self.reports else 0
+        spent = self.reports[-1].seconds if self.reports else 0.0
+        shifted = [
+            replace(r, step=r.step + done, total=r.total + done, seconds=r.seconds + spent) for r in later.reports
+        ]
+        kept = later.kept_step + done
+        return History([*self.reports, *shifted], kept, later.stopped_early, later.interrupted)

@@ -12,6 +12,7 @@ import optax
 from jaxtyping import Array
 
 from lagnet.models.dynamics import AbstractDynamics
+from lagnet.models.networks import OrderedNetwork
 from lagnet.training.loss import Errors, errors, penalised
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.soap import scale_by_soap
@@ -74,7 +75,7 @@ def make_loop(
             value, grads = jax.value_and_grad(loss)(params, tuple(x[rows] for x in data), penalty)
             updates, memory = direction.update(grads, memory, params)
             rate = _rate(count, total, settings)
-            params = jax.tree.map(lambda p, u: p - rate * u, params, updates)
+            params = jax.tree.map(lambda p, u: p - rate * u, _shrunk(params, rate * settings.weight_decay), updates)
             return (params, memory, count + 1), value
 
         carry = (state.params, state.optimiser, state.step)
@@ -98,6 +99,17 @@ def _rate(count: Array, total: Array, settings: TrainingSettings) -> Array:
     rise = jnp.minimum(1.0, (count + 1) / settings.warm_up)
     fall = 0.5 * (1.0 + jnp.cos(jnp.pi * jnp.minimum(1.0, count / total)))
     return settings.peak * rise * (LAST_SHARE + (1.0 - LAST_SHARE) * fall)
+
+
+def _shrunk(params: Any, share: Array) -> Any:
+    """Weights of perceptrons less a share of them; all else, whose sizes mean something, as it is."""
+
+    def smaller(part: Any) -> Any:
+        if not isinstance(part, OrderedNetwork):
+            return part
+        return eqx.tree_at(lambda x: x.weights, part, jax.tree.map(lambda w: (1.0 - share) * w, part.weights))
+
+    return jax.tree.map(smaller, params, is_leaf=lambda x: isinstance(x, OrderedNetwork))
 
 
 def _direction(name: str) -> optax.GradientTransformation:

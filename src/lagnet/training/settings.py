@@ -23,8 +23,10 @@ class TrainingSettings:
         optimiser: "soap", "adam" or "muon".
         warm_up: steps over which the learning rate rises.
         patience: share of all steps without a better held-out error after which training stops.
-        penalty: λ of eq. 12; None to choose among PENALTIES by held-out torque.
-        separation: "joint" trains mechanics and ε together under λ; "stages" trains mechanics alone, then ε alone.
+        weight_decay: rate at which weights of perceptrons shrink per unit of learning rate; 0 for plenty of data.
+        penalty: λ of eq. 12; None to choose among PENALTIES by held-out torque, or for none in stages.
+        separation: "stages" trains mechanics alone, then ε alone on what it left, so that ε can take nothing that
+            mechanics can give; "joint" trains both together under λ.
     """
 
     steps: int = 6000
@@ -34,8 +36,9 @@ class TrainingSettings:
     optimiser: str = "soap"
     warm_up: int = 100
     patience: float = 0.5
+    weight_decay: float = 0.0
     penalty: float | None = None
-    separation: str = "joint"
+    separation: str = "stages"
 
     def __post_init__(self) -> None:
         if self.optimiser not in OPTIMISERS:
@@ -46,6 +49,8 @@ class TrainingSettings:
             raise ModelError(f"steps ({self.steps}) and batch ({self.batch}) must be at least 1")
         if self.minutes is not None and not self.minutes > 0:
             raise ModelError(f"minutes is {self.minutes}, expected more than 0")
+        if not self.weight_decay >= 0:
+            raise ModelError(f"weight_decay is {self.weight_decay}, expected at least 0")
         if self.penalty is not None and self.penalty < 0:
             raise ModelError(f"penalty is {self.penalty}, expected at least 0")
 

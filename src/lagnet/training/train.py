@@ -30,6 +30,8 @@ from lagnet.training.samples import TrainingSamples, samples_of
 from lagnet.training.settings import PENALTIES, TrainingSettings
 
 TRIAL = 0.2  # share of the steps spent on each λ while one is being chosen
+MECHANICS = 0.6  # share of the steps for mechanics when trained in stages
+STAGES = ("mechanics", "epsilon")
 NO_WORSE = 1.05  # among λ whose held-out errors are this near to the best, the largest wins
 
 
@@ -112,7 +114,7 @@ def _fitted(start: AbstractDynamics, task: Task) -> tuple[Fitted, float | None]:
     if not isinstance(start, Augmented):
         return fit(start, task), None
     if task.settings.separation == "stages":
-        return _in_stages(start, task), 0.0
+        return _in_stages(start, task), task.settings.penalty or 0.0
     penalty = task.settings.penalty
     if penalty is None:
         penalty = choose_penalty(start, task)
@@ -131,13 +133,34 @@ def choose_penalty(start: AbstractDynamics, task: Task) -> float:
 
 
 def _in_stages(start: Augmented, task: Task) -> Fitted:
-    """Mechanics as far as mechanics goes, then ε on what it left."""
+    """Mechanics as far as mechanics goes, then ε on what it left; ε stays silent where it makes nothing better."""
     everything = jax.tree.map(eqx.is_array, start)
     nothing = jax.tree.map(lambda _: False, start)
     mechanics = eqx.tree_at(lambda x: x.mechanics, nothing, everything.mechanics)
     residual = eqx.tree_at(lambda x: x.residual, nothing, everything.residual)
-    first = fit(start, replace(task, trainable=mechanics, checkpoint=None))
-    return fit(first.dynamics, replace(task, trainable=residual, checkpoint=None))
+    first = fit(start, _stage(task, mechanics, MECHANICS, 0))
+    if first.history.interrupted:
+        return first
+    second = fit(first.dynamics, _stage(task, residual, 1.0 - MECHANICS, 1))
+    history = first.history.followed_by(second.history)
+    if second.error < first.error:
+        return replace(second, history=history)
+    return replace(first, history=replace(history, kept_step=first.history.kept_step))
+
+
+def _stage(task: Task, trainable: Any, share: float, place: int) -> Task:
+    """A share of the steps and minutes, with a checkpoint of its own."""
+    settings = task.settings
+    minutes = None if settings.minutes is None else settings.minutes * share
+    part = replace(settings, steps=max(1, round(settings.steps * share)), minutes=minutes)
+    path = None if task.checkpoint is None else stage_files(task.checkpoint)[place]
+    penalty = task.settings.penalty or 0.0
+    return replace(task, settings=part, trainable=trainable, checkpoint=path, penalty=penalty)
+
+
+def stage_files(checkpoint: Path) -> tuple[Path, ...]:
+    """Where the stages of a training keep their states, beside the checkpoint of a training in one piece."""
+    return tuple(checkpoint.with_name(f"{checkpoint.stem}_{name}{checkpoint.suffix}") for name in STAGES)
 
 
 def _stats(spec: ModelSpec, task: Task, fitted: Fitted, penalty: float | None, seconds: float) -> dict[str, Any]:
