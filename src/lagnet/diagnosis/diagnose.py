@@ -14,6 +14,7 @@ from lagnet.diagnosis.arm_search import Found, search_arm
 from lagnet.diagnosis.compose import compose_verdict
 from lagnet.diagnosis.curves import collect_evidence
 from lagnet.diagnosis.drift import Drift, find_drifts
+from lagnet.diagnosis.echoes import drop_echoes
 from lagnet.diagnosis.equal_in_motion import tie_equals
 from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
@@ -175,7 +176,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
         found = search_arm(bench, noise_power, torque_power)
     judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     found = settle_on(bench, judge, found, problem.scale)
-    found, fitted = refit_and_prune(problem, bench, found)
+    found, fitted = drop_echoes(problem, bench, *refit_and_prune(problem, bench, found))
     modest = withdraw(problem, bench, judge, found, fitted.effects, noise, seed)
     if modest is not found:
         found, fitted = refit_and_prune(problem, bench, modest)

@@ -12,7 +12,7 @@ from lagnet.diagnosis.fitting import Workbench, joint_loss, memory_of, take_off
 PRICE = 4.0  # nats that a hypothesis must earn: about the logarithm of the number of rivals at a joint
 PRICE_PER_COLUMN = 1.0  # nats more for each coefficient, beyond what unseen blocks already charge
 LEAST_SHARE = 0.06  # of the error still there: an effect that takes less off is not claimed
-LEAST_TORQUE = 0.004  # of the joint's torque: effects smaller than this are not claimed
+LEAST_TORQUE = 0.0075  # of the joint's torque: effects smaller than this, a quarter of three per cent, are not claimed
 LEAST_OF_ALL = 0.0009  # of the nominal error: three per cent of its root mean square
 REFINED = 0.002  # of the nominal error: what a wider law must gain over its special case, whose form is never exact
 ROUNDS = 40

@@ -62,6 +62,7 @@ class Effect(ABC):
     stage: ClassVar[Stage] = "torque"
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
     passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
+    hears_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod

@@ -23,6 +23,7 @@ class Backlash(Effect):
     formula = "τ(q − h sign(τ)) − τ(q)"
     parameters = (Parameter("h", "h", "rad", "half the gap between motor and link", lower=0.0, upper=0.2),)
     reaches_all = True
+    hears_torque = True
     instantaneous = False
     stage = "body"
     shown_by = "loads that change sign often, and reversals"
