@@ -25,6 +25,7 @@ SUSPECT = 2.0  # times the gain of the next best interval: reason enough to look
 LOOKS = 3  # rounds in which spells and lasting effects settle
 LEFT = 0.25  # of the power inside a spell: where a law leaves more, it is not the law
 HELPS = 0.5  # of the error inside a spell that must remain at most, on parts that were not fitted
+UNNAMED = 3000.0  # nats of a spell that no law explains, below which it may be a burst of what lasts
 NOTICED = 0.01  # of the torque: events smaller than this are not claimed
 
 
@@ -68,7 +69,8 @@ def settle_passing(inquiry: Inquiry, again: Callable[[Problem], Inquiry]) -> Inq
         if all(any(old.covers(new, slack) for old in spells) for new in scan.spells):
             break
         spells = scan.spells
-    return _named(replace(clean, problem=whole), scan) if scan.spells else inquiry
+    found = _named(replace(clean, problem=whole), scan) if scan.spells else inquiry
+    return found if found.passing or found.spells else inquiry
 
 
 def _named(clean: Inquiry, scan: Scan) -> Inquiry:
@@ -76,7 +78,8 @@ def _named(clean: Inquiry, scan: Scan) -> Inquiry:
     lasting = clean.refit.effects
     pairs = [(s, fit_spell(clean.problem, lasting, s, scan)) for s in scan.spells if not s.held_out]
     good = [(s, f) for s, f in pairs if _convinces(f)]
-    nameless = tuple(s for s in scan.spells if not any(s is t for t, _ in good))
+    others = (s for s in scan.spells if not any(s is t for t, _ in good))
+    nameless = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
     fits = [f for _, f in good]
     together = _refitted_together(set_aside(clean.problem, nameless), clean, fits)
     n = len(lasting)

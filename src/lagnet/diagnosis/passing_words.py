@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,11 +25,13 @@ MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is le
 
 def passing_effects(inquiry: Inquiry, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
     """The named effects that act on an interval of one fitted recording."""
-    return tuple(_effect(p, _name(fit, p.effect.recording or 0)) for p in inquiry.passing)
+    half = 0.5 / inquiry.problem.rate  # an edge lies between the last sample outside and the first inside
+    return tuple(_effect(p, _name(fit, p.effect.recording or 0), half) for p in inquiry.passing)
 
 
-def _effect(passing: Passing, recording: str) -> EffectFound:
-    effect, fit = passing.effect, passing.fit
+def _effect(passing: Passing, recording: str, half: float) -> EffectFound:
+    fit, (start, end) = passing.fit, passing.effect.interval or (0.0, 0.0)
+    effect = replace(passing.effect, interval=(start - half, end + half))
     law = effect_named(effect.effect)
     units = {p.name: p.unit for p in law.parameters} | dict.fromkeys(EDGES, "s")
     parameters = tuple(
