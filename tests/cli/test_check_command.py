@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -30,6 +32,18 @@ def test_faulty_robot_fails_and_the_first_line_says_what_and_where(capsys, tmp_p
     page = (tmp_path / "out" / "report.html").read_text()
     assert "finger_lower_link" in page
     assert "<script src=" not in page
+
+
+def test_exit_code_is_that_of_the_checks_when_the_reader_has_gone():
+    for robot, code in (("asr_twodof", 0), ("finger_edu", 1)):
+        command = [sys.executable, "-m", "lagnet.cli.main", "check", robot]
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert run.stdout is not None
+        run.stdout.close()
+        assert run.wait() == code
+        assert run.stderr is not None
+        assert run.stderr.read() == ""
+        run.stderr.close()
 
 
 def test_limits_and_skips_of_ones_own(capsys):

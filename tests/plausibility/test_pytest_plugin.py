@@ -78,6 +78,7 @@ def test_faulty_model_of_the_command_line_fails_with_the_place(tmp_path: Path):
     assert "link_pseudo_inertia" in done.stdout
     assert "finger_lower_link" in done.stdout
     assert "Traceback" not in done.stdout
+    assert "CheckResult" not in done.stdout, "the sentence says it all"
 
 
 @pytest.mark.parametrize(("drag", "code"), [("0.0", 0), ("0.3", 1)])

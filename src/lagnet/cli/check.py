@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -45,18 +47,25 @@ def command(
     # Degrees passed as radians are what the checks are asked to find: the reader must not refuse them here.
     recordings = [load_recording(path, joints=loaded.joints, columns=columns) for path in recording or []]
     report = check(loaded, believed, recordings, seed=seed, settings=settings)
-    print(report.headline())
-    for result in report.checks:
-        print(f"  {result.status:<14} {result.sentence()}")
+    lines = [report.headline(), *(f"  {result.status:<14} {result.sentence()}" for result in report.checks)]
     if out is not None:
         from lagnet.reports.plausibility_report import write_plausibility_report
 
         out.mkdir(parents=True, exist_ok=True)
         report.write(out / "plausibility.json")
         page = write_plausibility_report(report, model, out / "report.html")
-        print(f"report: {page}")
+        lines.append(f"report: {page}")
+    _tell(lines)
     if not report.passed:
         raise typer.Exit(1)
+
+
+def _tell(lines: list[str]) -> None:
+    """Print, also to a reader who closes the pipe behind the first line: the exit code stays that of the checks."""
+    try:
+        print("\n".join(lines), flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _limits(words: list[str]) -> dict[str, float]:

@@ -223,5 +223,6 @@ def _judge(name: str, subject: Any, properties: list[tuple[str, object]]) -> Any
     properties.extend((f"lagnet_{key}", value) for key, value in told.items() if value is not None)
     if result.status == "not_applicable":
         pytest.skip(result.detail)
-    assert not result.failed, f"{result.sentence()}\n{result.meaning} Limit: {result.justification}"
+    if result.failed:  # raised, not asserted: pytest would print the whole result below the sentence
+        raise AssertionError(f"{result.sentence()}\n{result.meaning} Limit: {result.justification}")
     return result
