@@ -5,31 +5,25 @@ from __future__ import annotations
 import argparse
 import json
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lagnet.models.kinds import AugmentedSettings
-from lagnet.models.torque_network import TorqueNetworkSettings
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.sarcos import load_sarcos
 from lagnet.training.settings import TrainingSettings
-from lagnet.training.train import train
+from validation.equal_budget import trained
 
 HERE = Path(__file__).parent
 DATA = Path(os.environ.get("LAGNET_DATA_DIR", HERE.parents[2] / "shared" / "data"))
-FOLDS, INNER = (
-    5,
-    0.1,
-)  # folds of all rows, a seed each; share of training rows to stop by
-SMALL = TorqueNetworkSettings(hidden=(64, 64))
-MODELS: dict[str, Any] = {
-    "delan": (None, TrainingSettings(steps=1500)),
-    "delan-blackbox": (None, TrainingSettings(steps=1500, learning_rate=3e-3)),
-    "ffnn": (SMALL, TrainingSettings(steps=1500, learning_rate=3e-3)),
-    "delan-ffnn": (AugmentedSettings(residual=SMALL), TrainingSettings(steps=1500, learning_rate=3e-3, penalty=1e-4)),
+FOLDS, INNER = 5, 0.1  # folds of all rows, a seed each; share of training rows to stop by
+SECONDS = 9.0  # processor time of the steps of one training, the same for every model
+PLAN: dict[str, TrainingSettings] = {  # chosen on the inner rows of the first fold
+    "delan": TrainingSettings(),
+    "delan-blackbox": TrainingSettings(weight_decay=0.1),
+    "ffnn": TrainingSettings(weight_decay=0.5),
+    "delan-ffnn": TrainingSettings(weight_decay=1.0, separation="stages"),
 }
 
 
@@ -49,30 +43,37 @@ def run(quick: bool) -> dict[str, Any]:
     rows = load_sarcos(DATA / "sarcos" / "sarcos_inv_test.mat")
     cuts = folds(rows)[: 1 if quick else FOLDS]
     models: dict[str, Any] = {}
-    for kind, (settings, training) in MODELS.items():
-        training = replace(training, steps=100) if quick else training
-        found = [_fold_error(rows, cut, kind, settings, training, seed) for seed, cut in enumerate(cuts)]
-        by_joint = np.mean(found, axis=0)
-        sums = [float(np.sum(f)) for f in found]
-        models[kind] = {"mse_by_joint": by_joint.tolist(), "sum": float(by_joint.sum()), "sum_by_fold": sums}
-        print(kind, models[kind], flush=True)
-    sums = {kind: m["sum"] for kind, m in models.items()}
-    return {"folds": len(cuts), "rows": len(rows), "models": models, "passed": judge(sums)}
+    for kind in PLAN:
+        found = [_fold(rows, cut, kind, seed, 0.1 if quick else SECONDS) for seed, cut in enumerate(cuts)]
+        errors = np.array([f["mse_by_joint"] for f in found])
+        models[kind] = {"mse_by_joint": errors.mean(axis=0).tolist(), "sum": float(errors.sum(axis=1).mean())}
+        models[kind] |= {"spread": float(errors.sum(axis=1).std(ddof=1)) if len(found) > 1 else None, "folds": found}
+        print(kind, models[kind]["sum"], models[kind]["spread"], flush=True)
+    return {"rows": len(rows), "models": models, "passed": judge(models)}
 
 
-def judge(sums: dict[str, float]) -> dict[str, bool]:
+def judge(models: dict[str, Any]) -> dict[str, bool]:
     """The pass line of README.md."""
-    return {f"delan-ffnn below {k}": sums["delan-ffnn"] < s for k, s in sums.items() if k != "delan-ffnn"}
+    ours = models["delan-ffnn"]["sum"]
+    return {f"delan-ffnn below {k}": ours < m["sum"] for k, m in models.items() if k != "delan-ffnn"}
 
 
-def _fold_error(
-    rows: Recording, cut: tuple[np.ndarray, ...], kind: str, settings: Any, training: TrainingSettings, seed: int
-) -> np.ndarray:
+def _fold(rows: Recording, cut: tuple[np.ndarray, ...], kind: str, seed: int, seconds: float) -> dict[str, Any]:
+    """Errors on the rows held out, and what the training took."""
     seen, inner, test = (rows.rows(np.sort(part)) for part in cut)
-    model = train([seen], kind, seed=seed, holdout=[inner], settings=settings, training=training).model
+    done = trained([seen], kind, seconds, PLAN[kind], seed=seed, holdout=[inner])
+    model, stats = done.result.model, done.result.stats
     assert test.v is not None
     assert test.a is not None
-    return np.mean((model.inverse_dynamics(test.q, test.v, test.a) - test.tau) ** 2, axis=0)
+    error = model.inverse_dynamics(test.q, test.v, test.a) - test.tau
+    outside = model.residual_torque(test.q, test.v, test.a)
+    return {
+        "mse_by_joint": np.mean(error**2, axis=0).tolist(),
+        "sum": float(np.mean(error**2, axis=0).sum()),
+        "outside_mechanics": (outside.var(axis=0) / test.tau.var(axis=0)).tolist(),
+        **{name: stats[name] for name in ("seed", "steps", "kept_step")},
+        "cpu_seconds": done.cpu_seconds,
+    }
 
 
 def draw_figure(result: dict[str, Any], path: Path) -> None:
@@ -85,7 +86,7 @@ def draw_figure(result: dict[str, Any], path: Path) -> None:
     figure, axis = pyplot.subplots(figsize=(7, 3.4))
     for place, (kind, found) in enumerate(result["models"].items()):
         errors = found["mse_by_joint"]
-        axis.bar(np.arange(len(errors)) + 0.2 * place, errors, 0.2, label=f"{kind} (sum {found['sum']:.2f})")
+        axis.bar(np.arange(len(errors)) + 0.2 * place, errors, 0.2, label=f"{kind} (sum {found['sum']:.1f})")
     axis.set(yscale="log", xlabel="joint", ylabel="mean squared error [N² m²]")
     axis.legend(fontsize=7)
     figure.tight_layout()
