@@ -112,7 +112,8 @@ def _parameters(h: Hidden, claim: dict) -> list[tuple[str, float, bool | None]]:
     """(name, relative error, whether the interval holds the truth) of each parameter that both sides have."""
     given = {p["name"]: p for p in claim["parameters"]}
     out: list[tuple[str, float, bool | None]] = []
-    for group in (("cx", "cy", "cz"), ("theta_1", "theta_2")):  # vectors: a small component has no error of its own
+    groups = (("cx", "cy", "cz"), ("theta_1", "theta_2"), ("Fx", "Fy", "Fz"), ("px", "py", "pz"))
+    for group in groups:  # vectors: a small component has no error of its own
         if all(k in given and k in h.values for k in group):
             true = np.array([h.values[k] for k in group])
             seen = np.array([given[k]["value"] for k in group])
