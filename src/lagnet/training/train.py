@@ -134,13 +134,12 @@ def choose_penalty(start: AbstractDynamics, task: Task) -> float:
 
 def _in_stages(start: Augmented, task: Task) -> Fitted:
     """Mechanics as far as mechanics goes, then ε on what it left; ε stays silent where it makes nothing better."""
-    everything = jax.tree.map(eqx.is_array, start)
-    nothing = jax.tree.map(lambda _: False, start)
-    mechanics = eqx.tree_at(lambda x: x.mechanics, nothing, everything.mechanics)
-    residual = eqx.tree_at(lambda x: x.residual, nothing, everything.residual)
-    first = fit(start, _stage(task, mechanics, MECHANICS, 0))
+    alone = fit(start.mechanics, _stage(task, None, MECHANICS, 0))
+    first = replace(alone, dynamics=eqx.tree_at(lambda x: x.mechanics, start, alone.dynamics))
     if first.history.interrupted:
         return first
+    nothing = jax.tree.map(lambda _: False, start)
+    residual = eqx.tree_at(lambda x: x.residual, nothing, jax.tree.map(eqx.is_array, start.residual))
     second = fit(first.dynamics, _stage(task, residual, 1.0 - MECHANICS, 1))
     history = first.history.followed_by(second.history)
     if second.error < first.error:
