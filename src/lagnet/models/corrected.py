@@ -26,6 +26,7 @@ OF_BODIES = {
     "with_gravity",
 }
 EDGES = ("t0", "t1")  # start and end of what lasts for a while
+WRITTEN = {"payload", "link_inertia", "gravity_tilt"}  # what can be written into the bodies of a robot
 UNORDERED = 1.0  # [s] between samples of which no order is known: nothing carries over from one to the next
 
 
@@ -158,7 +159,10 @@ class CorrectedModel:
         """Torque of samples that stand for themselves, shape (n, dof); delays and memory need `torque_along`."""
         time = UNORDERED * np.arange(len(q))
         ordered = [e for e in self.effects if effect_named(e.effect).instantaneous and e.interval is None]
-        return torque_with(self._motion(time, q, v, a, self.nominal.inverse_dynamics(q, v, a)), ordered)
+        model = self._written or self.nominal
+        if self._written is not None:
+            ordered = [e for e in ordered if e.effect not in WRITTEN]
+        return torque_with(self._motion(time, q, v, a, model.inverse_dynamics(q, v, a)), ordered)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque along a motion on an even clock, with delays and memory, shape (n, dof) [N m]."""
@@ -202,7 +206,17 @@ class CorrectedModel:
 
     @cached_property
     def _changes_bodies(self) -> bool:
-        return any(e.effect in ("payload", "link_inertia", "gravity_tilt") for e in self.effects)
+        return any(e.effect in WRITTEN for e in self.effects)
+
+    @cached_property
+    def _written(self) -> Any:
+        """The robot with its changed bodies, many times quicker than their regressors; None where it cannot be had."""
+        if isinstance(self.nominal, CorrectedModel) or not self._changes_bodies:
+            return None
+        try:
+            return self._changed if hasattr(self.nominal, "with_inertial_parameters") else None
+        except ValueError:  # a first moment without mass
+            return None
 
     @cached_property
     def _changed(self) -> Any:
