@@ -84,3 +84,16 @@ def test_rounds_of_neighbours_climb_and_stay_in_the_box():
     assert worst.value > value
     assert worst.value == measure(worst.point[None])[0]
     assert all(np.abs(points).max() <= 1.0 for points in seen)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_perceptron_grows_no_faster_than_its_inputs_although_its_units_cancel_in_places(seed: int):
+    rng = np.random.default_rng(seed)
+    inward, bias, outward = rng.normal(size=(16, 6)), 5.0 * rng.normal(size=16), rng.normal(size=(2, 16))
+
+    def residual(q, v, a):
+        seen = np.concatenate([np.sin(q), v, a], axis=1) @ inward.T + bias
+        return np.maximum(seen, 0.0) @ outward.T
+
+    found = check(Assembled(ARM, residual_torque=residual), settings=LIGHT)["bounded_growth"]
+    assert found.status == "pass", found.sentence()

@@ -72,7 +72,7 @@ def worst_point(subject: Subject, dimension: int, measure: Measure) -> Worst:
         measure: takes points (n, p), returns (n,).
     """
     seen = _Best(measure)
-    points = _samples(subject, dimension)
+    points = starting_points(subject, dimension)
     values = seen(points)
     sampled = seen.value
     for start in points[np.argsort(values)[::-1][: subject.settings.starts]]:
@@ -112,7 +112,7 @@ class _Best:
         return values
 
 
-def _samples(subject: Subject, dimension: int) -> np.ndarray:
+def starting_points(subject: Subject, dimension: int) -> np.ndarray:
     """Centre, corners, ends of every axis, and random points: limits of joints are where models are worst."""
     rng = np.random.default_rng([subject.seed, dimension])
     corners = rng.choice([-1.0, 1.0], (CORNERS, dimension))

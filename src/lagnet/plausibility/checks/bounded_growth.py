@@ -6,17 +6,17 @@ import numpy as np
 
 from lagnet.plausibility.calling import NotFinite
 from lagnet.plausibility.check import Check, Finding
-from lagnet.plausibility.search import worst_configuration
+from lagnet.plausibility.search import Space, Worst, starting_points, worst_configuration
 from lagnet.plausibility.subject import Subject
 
-NEAR, FAR = 10.0, 100.0  # times the box of motion
+NEAR, FAR = 100.0, 1000.0  # times the box of motion: far beyond where a network bends
 # Powers that rigid bodies reach: H is quadratic in the position of sliding joints, c in v, torque linear in a. Turning
 # joints come back after a turn; a model that does not know so may still grow with the square.
 ALLOWED = {"sliding": 2.0, "turning": 2.0, "v": 2.0, "a": 1.0}
 
 
 class BoundedGrowth(Check):
-    """Exponent of growth between 10 and 100 times the box of motion, of the torque and of ε alone."""
+    """Exponent of growth between 100 and 1000 times the box of motion, of the torque and of ε alone."""
 
     name = "bounded_growth"
     title = "torque grows no faster than mechanics allows outside the data"
@@ -33,9 +33,7 @@ class BoundedGrowth(Check):
                 continue
             for part in ("torque", "residual") if subject.offers("residual_torque") else ("torque",):
                 try:
-                    found, where = worst_configuration(
-                        subject, "qva", lambda q, v, a, w=what, p=part: _exponent(subject, w, p, q, v, a)
-                    )
+                    found, where = _worst(subject, what, part)
                 except NotFinite as broken:
                     return Finding(np.inf, broken.where, f"{part} is not finite far outside the data ({what})")
                 if found.value - allowed > worst:
@@ -44,21 +42,33 @@ class BoundedGrowth(Check):
         return Finding(float(worst), place, words)
 
 
-def _exponent(subject: Subject, what: str, part: str, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Exponent of the growth of the most growing joint, shape (n,).
+def _worst(subject: Subject, what: str, part: str) -> tuple[Worst, dict[str, list[float]]]:
+    """Where the exponent of a joint's growth is largest.
 
-    What does not grow is taken off, and both directions count, so that linear and square parts that cancel at one
-    place do not look like quick growth from there.
+    What lies far out is measured against the largest of what lies near, anywhere in the box: at a single place, parts
+    that cancel there would make any growth from there look quick.
     """
+    space = Space(subject, "qva")
+    everywhere = space.decode(starting_points(subject, space.dimension))
+    largest = _size(subject, what, part, NEAR, *everywhere).max(axis=0)
+
+    def exponent(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        near, far = (_size(subject, what, part, factor, q, v, a) for factor in (NEAR, FAR))
+        # Torques below the typical one far out are no growth, however small they were nearer.
+        ratio = np.maximum(far, 1.0) / np.maximum(np.maximum(near, largest), 1.0)
+        return (np.log(ratio) / np.log(FAR / NEAR)).max(axis=1)
+
+    return worst_configuration(subject, "qva", exponent)
+
+
+def _size(
+    subject: Subject, what: str, part: str, factor: float, q: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> np.ndarray:
+    """What a part of the torque gains in either direction, over the typical torque, shape (n, dof)."""
     call = getattr(subject, part)
     rest = call(*_scaled(subject, what, 0.0, q, v, a))
-    near, far = (
-        np.maximum(*(np.abs(call(*_scaled(subject, what, sign * factor, q, v, a)) - rest) for sign in (1.0, -1.0)))
-        / subject.torque_scale
-        for factor in (NEAR, FAR)
-    )
-    # Torques below the typical one far out are no growth, however small they were nearer.
-    return (np.log(np.maximum(far, 1.0) / np.maximum(near, 1.0)) / np.log(FAR / NEAR)).max(axis=1)
+    there, back = (np.abs(call(*_scaled(subject, what, sign * factor, q, v, a)) - rest) for sign in (1.0, -1.0))
+    return np.maximum(there, back) / subject.torque_scale
 
 
 def _scaled(
