@@ -27,7 +27,7 @@ RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave o
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 BODIES = 2  # rounds over the bodies: making one consistent moves the others
 CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
-NOTHING = 1e-200  # power of a derivative that is zero
+NOTHING = 1e-40  # of the largest power of a derivative: below it, a coordinate has no say
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -162,7 +162,10 @@ class _Work:
         robust = inverse @ (table.T @ table) @ inverse * inflation
         count = sum(p.counts.sum() for p in self.pieces)
         plain = inverse * _power(rest) / max(1.0, count - x.size)
-        widest = np.maximum(np.sqrt(np.diag(plain) / np.maximum(np.diag(robust), 1e-300)), 1.0)
+        variance = np.diag(robust)
+        known = variance > 1e-200  # where the data say anything of a coordinate
+        widest = np.ones(x.size)
+        widest[known] = np.maximum(np.sqrt(np.diag(plain)[known] / variance[known]), 1.0)
         return robust * widest[:, None] * widest[None, :], freedom
 
 
@@ -180,7 +183,8 @@ def _normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> 
 def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     power = np.diag(gram)
     scale = np.zeros(len(gram))  # a coordinate without any say, such as a sense of rotation, stays where it is
-    scale[power > NOTHING] = 1.0 / np.sqrt(power[power > NOTHING])
+    felt = power > max(NOTHING * float(np.max(power, initial=0.0)), 1e-200)
+    scale[felt] = 1.0 / np.sqrt(power[felt])
     return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
 
 
@@ -272,5 +276,6 @@ def _slope(effect: NamedEffect, x: np.ndarray, k: int, here: dict[str, float]) -
 
 
 def _correlations(covariance: np.ndarray) -> np.ndarray:
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    variance = np.diag(covariance)
+    scale = np.where(variance > 1e-200, 1.0 / np.sqrt(np.maximum(variance, 1e-200)), 0.0)
     return covariance * scale[:, None] * scale[None, :]
