@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from tests.models.term_by_term import GravityInResidual, WithoutCoriolis, failures
 
 from lagnet.errors import ModelError
 from lagnet.models import euler_lagrange
+from lagnet.models.learned_model import LearnedModel
 from lagnet.models.loading import load_any
 from lagnet.models.serial_chain.fit import fit_serial_chain
 from lagnet.models.serial_chain.inertia import from_standard, pseudo_inertia, to_standard
@@ -143,20 +147,31 @@ def test_unit_of_length_is_free_for_turning_joints() -> None:
     assert np.linalg.norm(x_new[-3:]) == pytest.approx(STANDARD_GRAVITY)
 
 
+def failed(model: Any, robot: Robot) -> set[str]:
+    return failures(model, robot, _motion(robot, 300, 99), EXACT, EXACT**0.5, EXACT)
+
+
 def test_every_term_is_found_from_torque_alone(robot: Robot, learned: tuple) -> None:
     model = learned[0]
-    q, v, a = _motion(robot, 300, 99)
-    tau = robot.inverse_dynamics(q, v, a)
-    assert _nmse(model.inverse_dynamics(q, v, a), tau) < EXACT
-    assert _nmse(model.coriolis_torque(q, v), robot.coriolis_torque(q, v)) < EXACT
-    assert _nmse(model.gravity_torque(q), robot.gravity_torque(q)) < EXACT
-    assert _nmse(model.forward_dynamics(q, v, tau), a) < EXACT
-    for got, want in (
-        (model.mass_matrix(q), robot.mass_matrix(q)),
-        (model.coriolis_matrix(q, v), robot.coriolis_matrix(q, v)),
-    ):
-        assert np.sum((got - want) ** 2) < EXACT * np.sum(want**2)
-    np.testing.assert_array_equal(model.residual_torque(q, v, a), 0.0)
+    assert failed(model, robot) == set()
+    np.testing.assert_array_equal(model.residual_torque(*_motion(robot, 300, 99)), 0.0)
+
+
+def test_mutants_of_the_chain_fail_where_they_are_wrong(robot: Robot, learned: tuple) -> None:
+    model = learned[0]
+    assert {"torque", "coriolis", "coriolis_matrix"} <= failed(WithoutCoriolis(model), robot)
+    assert failed(GravityInResidual(model), robot) == {"gravity"}
+
+
+def test_a_chain_of_shuffled_torque_fails_in_every_term(robot: Robot, learned: tuple) -> None:
+    q, v, a = _motion(robot, 500, 4)
+    tau = np.random.default_rng(0).permutation(robot.inverse_dynamics(q, v, a))
+    columns = learned[0].joint_torque_regressor(q, v, a).reshape(tau.size, -1)
+    links = np.linalg.lstsq(columns, tau.ravel(), rcond=1e-9)[0].reshape(3, 10)
+    moments = from_standard(links)
+    dynamics = eqx.tree_at(lambda x: x.lagrangian.moments, learned[0].dynamics, jnp.asarray(moments))
+    wrong = {"torque", "inertial", "coriolis", "coriolis_matrix", "gravity", "mass_matrix", "forward_dynamics"}
+    assert failed(LearnedModel(learned[0].spec, dynamics), robot) == wrong
 
 
 def test_a_prismatic_joint_lets_gravity_be_measured(learned: tuple, robot: Robot) -> None:
