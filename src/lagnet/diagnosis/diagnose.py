@@ -177,8 +177,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     found = settle_on(bench, judge, found, problem.scale)
     found, fitted = drop_echoes(problem, bench, *refit_and_prune(problem, bench, found))
-    modest = withdraw(problem, bench, judge, found, fitted.effects, noise, seed)
-    if modest is not found:
+    while (modest := withdraw(problem, bench, judge, found, fitted.effects, noise, seed)) is not found:
         found, fitted = refit_and_prune(problem, bench, modest)
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))

@@ -18,7 +18,7 @@ class TimeDelay(Effect):
     name = "time_delay"
     title = "Time delay of the torque"
     formula = "τ(t − T) − τ(t)"
-    parameters = (Parameter("T", "T", "s", "time by which torque lags motion", lower=-0.25, upper=0.25),)
+    parameters = (Parameter("T", "T", "s", "time by which torque lags motion", lower=-0.03, upper=0.25),)
     stage = "signal"
     instantaneous = False
     shown_by = "fast motion with quick changes of torque"
