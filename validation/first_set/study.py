@@ -1,11 +1,12 @@
 """Does the diagnosis find the first set of effects, one and two at a time, and stay silent where nothing is hidden?
 
-python -m validation.first_set.study [--quick] [--seed 1] [--processes 2]
+python -m validation.first_set.study [--quick | --score-again] [--seed 1] [--processes 2]
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from itertools import product
 from pathlib import Path
@@ -13,6 +14,7 @@ from pathlib import Path
 from validation.plants.draw import FIRST_SET, draw_plant
 from validation.plants.figures import draw
 from validation.plants.protocol import Line, conduct, fresh, report
+from validation.plants.scoring import score_again
 from validation.plants.spec import PlantSpec
 
 HERE = Path(__file__).resolve().parent
@@ -43,13 +45,24 @@ def plants(seed: int, quick: bool) -> list[PlantSpec]:
     return specs
 
 
+def score_kept() -> int:
+    """Write result.json and figure again from the claims in it."""
+    kept = json.loads((HERE / "result.json").read_text())
+    passed = report([score_again(p) for p in kept["plants"]], LINES, kept["study"], HERE / "result.json")
+    draw(HERE / "result.json", HERE / "figure.png")
+    return 0 if passed else 1
+
+
 def main() -> int:
     """Run the study; exit code 1 where a pass line is crossed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="a handful of plants, result in out/")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--score-again", action="store_true", help="judge the claims of result.json anew")
     given = parser.parse_args()
+    if given.score_again:
+        return score_kept()
     out = fresh(Path("out") / ("first_set_quick" if given.quick else "first_set"))
     scores = conduct(plants(given.seed, given.quick), out, given.processes)
     home = out if given.quick else HERE

@@ -26,7 +26,9 @@ class Score:
         found: hidden effects that a claim on the right joint names, alone or in a tie of at most three.
         named_alone: hidden effects that a claim names without a tie.
         joint_right, joint_judged: of the claims that name a hidden effect, those on its joint, and all.
-        wrong: claims that match nothing hidden.
+        wrong: claims that match nothing hidden, alone or in their tie.
+        halves: claims beside another that matches the same hidden effect, as an offset beside Coulomb friction, both
+            tied with friction that differs by direction.
         errors: relative parameter errors of the effects named, by "effect.parameter".
         covered: whether the 95 % interval holds the truth, by "effect.parameter".
         gain_share: gain in held-out error reached, over the true law's; None where nothing was hidden.
@@ -43,6 +45,7 @@ class Score:
     joint_right: int = 0
     joint_judged: int = 0
     wrong: int = 0
+    halves: int = 0
     errors: dict[str, float] = field(default_factory=dict)
     covered: dict[str, bool] = field(default_factory=dict)
     gain_share: float | None = None
@@ -82,12 +85,30 @@ def score(spec: PlantSpec, result: BlindResult, beyond: np.ndarray) -> Score:
         named_alone=sum(not e["tied_with"] for _, e in named),
         joint_right=sum(any(h.effect in _names(e) and h.joint == e["joint"] for h in spec.hidden) for e in near),
         joint_judged=len(near),
-        wrong=len(effects) - len(pairs),
+        **_unpaired(hidden, claims, len(pairs)),
         errors=errors,
         covered=covered,
         gain_share=_gain_share(spec.robot, result.folder, beyond) if spec.hidden else None,
         seconds=result.seconds,
     )
+
+
+def _unpaired(
+    hidden: list[tuple[str, str | None]], claims: list[tuple[str, str | None, list[str]]], pairs: int
+) -> dict:
+    """Claims that are not paired with a hidden effect: wrong ones, and second halves of a tie that holds the truth."""
+    matching = sum(
+        any((name, joint) in hidden for name in ([effect, *tied] if len(tied) < LARGEST_TIE else [effect]))
+        for effect, joint, tied in claims
+    )
+    return {"wrong": len(claims) - matching, "halves": matching - pairs}
+
+
+def score_again(kept: dict) -> Score:
+    """A score of a result file with its claims held against the truth anew."""
+    hidden = [(effect, joint) for effect, joint in kept["hidden"]]
+    claims = [(effect, joint, list(tied)) for effect, joint, tied in kept["claims"]]
+    return Score(**kept | {"hidden": hidden, "claims": claims} | _unpaired(hidden, claims, kept["found"]))
 
 
 def _names(claim: dict) -> list[str]:
@@ -160,8 +181,9 @@ def summary(scores: list[Score]) -> dict:
         "hidden_effects": hidden,
         "recall": found / hidden if hidden else None,
         "recall_named_alone": sum(s.named_alone for s in scores) / hidden if hidden else None,
-        "precision": found / claims if claims else None,
+        "precision": (claims - wrong) / claims if claims else None,
         "wrong_share": wrong / claims if claims else 0.0,
+        "unpaired_share": (claims - found) / claims if claims else 0.0,
         "right_joint": sum(s.joint_right for s in scores) / judged if judged else None,
         "plants_without_physics": len(empty),
         "claims_on_plants_without_physics": sum(len(s.claims) for s in empty),
