@@ -41,15 +41,31 @@ def made(kind: str) -> tuple[ModelSpec, Any]:
 def best_time(call: Callable[[], Any], repeats: int) -> float:
     """Shortest wall-clock of some calls [s], after one that compiles: what the machine can do when left alone."""
     jax.block_until_ready(call())
-    times = []
-    for _ in range(repeats):
-        began = time.perf_counter()
+    return min(_timed(call) for _ in range(repeats))
+
+
+def paired_times(ours: Callable[[], Any], usual: Callable[[], Any], repeats: int) -> dict[str, Any]:
+    """Both calls timed in turn, so that what else the machine does falls on both; the ratio is the median of pairs."""
+    for call in (ours, usual):
         jax.block_until_ready(call())
-        times.append(time.perf_counter() - began)
-    return min(times)
+    pairs = np.array([[_timed(call) for call in (ours, usual)] for _ in range(repeats)])
+    median, ratios = np.median(pairs, axis=0), pairs[:, 1] / pairs[:, 0]
+    low, high = np.percentile(ratios, [25, 75])
+    return {
+        "ours": float(median[0]),
+        "hessian": float(median[1]),
+        "ratio": float(np.median(ratios)),
+        "ratio_quartiles": [float(low), float(high)],
+    }
 
 
-def step_times(kind: str, repeats: int) -> dict[str, float]:
+def _timed(call: Callable[[], Any]) -> float:
+    began = time.perf_counter()
+    jax.block_until_ready(call())
+    return time.perf_counter() - began
+
+
+def step_times(kind: str, repeats: int) -> dict[str, Any]:
     """Gradient of the torque error over one batch, by both formulations [s], timed in turn in one process."""
     _, dynamics = made(kind)
     arm, rest = eqx.partition(dynamics.lagrangian, eqx.is_array)
@@ -65,7 +81,7 @@ def step_times(kind: str, repeats: int) -> dict[str, float]:
         return lambda: compiled(arm)
 
     ours, usual = gradient(euler_lagrange.inverse_dynamics), gradient(hessian_inverse_dynamics)
-    return {"ours": best_time(ours, repeats), "hessian": best_time(usual, repeats)}
+    return paired_times(ours, usual, repeats)
 
 
 def batched_rate(kind: str, repeats: int) -> float:
@@ -102,10 +118,10 @@ def run(quick: bool) -> dict[str, Any]:
     repeats = 5 if quick else 60
     out: dict[str, Any] = {"cores": os.cpu_count(), "load": os.getloadavg()[0], "matrix_flops": matrix_rate(repeats)}
     for kind in KINDS:
-        steps = step_times(kind, repeats)
+        steps = step_times(kind, 5 * repeats)
         out[kind] = {
             "step_seconds": steps,
-            "step_ratio": steps["hessian"] / steps["ours"],
+            "step_ratio": steps["ratio"],
             "samples_per_second": batched_rate(kind, repeats),
             "single_seconds": single_time(kind, 20 * repeats),
         }
