@@ -8,6 +8,7 @@ import numpy as np
 
 RIDGE = 1e-6  # of a column's power: settles what an interval leaves open at zero
 EDGE_ROUNDS = 8
+CHUNK = 10_000  # intervals that are solved for at once, which bounds the memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +25,10 @@ class Running:
 
     def gains(self, start: np.ndarray, stop: np.ndarray) -> np.ndarray:
         """Log likelihood [nats] that the columns gain on the samples start to stop - 1, shape (n_intervals,)."""
+        parts = range(0, max(1, len(start)), CHUNK)
+        return np.concatenate([self._gains(start[i : i + CHUNK], stop[i : i + CHUNK]) for i in parts])
+
+    def _gains(self, start: np.ndarray, stop: np.ndarray) -> np.ndarray:
         gram, moment = self.gram[stop] - self.gram[start], self.moment[stop] - self.moment[start]
         diagonal = np.maximum(np.diagonal(gram, axis1=1, axis2=2), 0.0)
         least = RIDGE * self.gram[-1].diagonal() / max(1, len(self.power))  # a column that is nothing here stays out

@@ -21,6 +21,7 @@ LEAST_SHARE = 0.5  # of the power inside that the columns must explain
 TRIED = 8  # intervals that are looked at closely
 SMEAR = 1.5  # periods of the bandwidth by which the filter widens a spell
 MOST = 0.75  # of the samples that may be set aside
+MOST_SAMPLES = 40_000  # that are scanned: of longer recordings every second, third ... sample, which bounds the memory
 FEW = 8  # samples of a joint below which a block says nothing
 
 
@@ -72,13 +73,14 @@ def find_spells(
         stands_out: how far an interval must leave behind the next best one.
     """
     fitted, held = (strands_of(problem, pieces, effects) for pieces in (problem.fit, problem.holdout))
-    strands = [*((s, False) for s in fitted), *((s, True) for s in held)]
+    step = max(1, -(-sum(len(s.time) for s in (*fitted, *held)) // MOST_SAMPLES))
+    strands = [(s.thinned(step), is_held) for part, is_held in ((fitted, False), (held, True)) for s in part]
     power = np.maximum(_usual_power([s for s, _ in strands]), np.maximum(noise, 1e-9 * problem.scale) ** 2)
     if not hasattr(problem.nominal, "wrench_regressor"):
         return Scan((), power, 1.0)
     law = ContactForce()
     sums = [run_up(law.relaxed(s.motion), s.rest * s.counts, s.counts / power) for s, _ in strands]
-    shortest = max(FEW, round(SHORTEST * _rate(fitted)))
+    shortest = max(FEW, round(SHORTEST * _rate([s for s, _ in strands])))
     looked = _closest_looks(sums, shortest, stands_out)
     spells = [_spell(strands[n], start, stop, gain) for n, start, stop, gain in looked.best]
     return Scan(tuple(spells), power, looked.inflation)

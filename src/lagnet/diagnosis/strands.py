@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +32,12 @@ class Strand:
     def time(self) -> np.ndarray:
         """Clock of the recording at the samples, shape (n,) [s]."""
         return self.motion.time
+
+    def thinned(self, step: int) -> Strand:
+        """Every so many of the samples."""
+        m, rows = self.motion, slice(None, None, step)
+        motion = replace(m, time=m.time[rows], q=m.q[rows], v=m.v[rows], a=m.a[rows], load=m.load[rows], cache={})
+        return Strand(motion, self.rest[rows], self.counts[rows], self.index)
 
 
 def strands_of(problem: Problem, pieces: Sequence[Piece], effects: Sequence[NamedEffect]) -> tuple[Strand, ...]:
