@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lagnet.rigid_body.robot import load_description
+from lagnet.models.kinds import AugmentedSettings
+from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.robot import Robot, load_description
 from lagnet.training.settings import TrainingSettings
-from lagnet.training.train import train
+from validation.equal_budget import SETTINGS, Trained, trained
 from validation.ideal.figure import draw_figure
 from validation.ideal.motion import MotionSettings, random_motion
 from validation.ideal.terms import median_errors, term_errors
@@ -25,34 +27,70 @@ LIMITS = {  # per joint, the pass line of README.md for the structured DeLaN
     "gravity": [1e-4, 1e-4, 1e-4, 1e-2, 1e-2, 1e-2],
 }
 MASS_LIMIT = 1e-2
-PLAN = {  # seeds and training of each model; the paper's perceptron form gets the longest
-    "delan": (5, TrainingSettings(steps=5000, minutes=3.0)),
-    "delan-ffnn": (1, TrainingSettings(steps=5000, minutes=4.0, penalty=1e-4)),
-    "delan-perceptron": (1, TrainingSettings(steps=20000, minutes=4.0, learning_rate=3e-3)),
-    "delan-blackbox": (1, TrainingSettings(steps=20000, minutes=3.0, learning_rate=3e-3)),
-    "ffnn": (1, TrainingSettings(steps=20000, minutes=2.0, learning_rate=3e-3)),
+TEST_SEED = 3000  # one that nothing was chosen on: development looked at 1000 and 2000
+SECONDS = 25.0  # processor time of the steps of one training, the same for every model
+ODD = "delan-ffnn, odd"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A model, how it is trained, by how many seeds, and its steps as a share of what `steps_for` gives."""
+
+    kind: str
+    seeds: int
+    training: TrainingSettings = field(default_factory=TrainingSettings)
+    settings: Any = None
+    share: float = 1.0
+
+
+PLAN = {
+    "delan": Plan("delan", 3),
+    "delan-ffnn": Plan("delan-ffnn", 2, share=1.4),  # a stage does not pay for what it does not train
+    ODD: Plan(
+        "delan-ffnn",
+        3,
+        TrainingSettings(separation="joint", penalty=0.0),
+        AugmentedSettings(parity="odd"),
+        share=0.75,  # an ε of odd parity is evaluated twice a sample
+    ),
+    "delan-blackbox": Plan("delan-blackbox", 1, settings=SETTINGS["delan-blackbox"]),
+    "ffnn": Plan("ffnn", 3),
 }
-ORDER = ("delan", "delan-ffnn", "delan-perceptron", "delan-blackbox", "ffnn")
+AUGMENTED = ("delan-ffnn", ODD)
+NEURAL = {"joint_types": ("continuous",) * 6}
 
 
 def run(quick: bool) -> dict[str, Any]:
     """Train every model, judge it on motions of unseen seeds."""
     robot = load_description("ur5")
     data = random_motion(robot, MotionSettings(), seed=0, samples=6000 if quick else SAMPLES)
-    test = random_motion(robot, TEST, seed=1000)
+    test = random_motion(robot, TEST, seed=TEST_SEED)
     models: dict[str, Any] = {}
-    for kind, (seeds, training) in PLAN.items():
-        training = replace(training, steps=200) if quick else training
-        found, seconds, epsilon = [], [], []
-        for seed in range(1 if quick else seeds):
-            fit = train([data], kind, seed=seed, training=training, joint_types=("continuous",) * 6)
-            found.append(term_errors(fit.model, robot, test))
-            seconds.append(fit.stats["seconds"])
-            residual = fit.model.residual_torque(test.q, test.v, test.a)
-            epsilon.append(float((residual.var(axis=0) / test.tau.var(axis=0)).mean()))
-            print(kind, seed, seconds[-1], found[-1], flush=True)
-        models[kind] = {"median": median_errors(found), "seeds": found, "seconds": seconds, "residual_share": epsilon}
+    for name, plan in PLAN.items():
+        done = [_trained(plan, data, seed, quick) for seed in range(1 if quick else plan.seeds)]
+        models[name] = _told(done, robot, test)
+        print(name, models[name]["median"], models[name]["cpu_seconds"], flush=True)
     return {"samples": len(data), "test_samples": len(test), "models": models, "passed": judge(models)}
+
+
+def _trained(plan: Plan, data: Recording, seed: int, quick: bool) -> Trained:
+    seconds = 0.3 if quick else SECONDS * plan.share
+    return trained([data], plan.kind, seconds, plan.training, seed=seed, settings=plan.settings, **NEURAL)
+
+
+def _told(done: list[Trained], robot: Robot, test: Recording) -> dict[str, Any]:
+    """Errors over seeds, what lies outside mechanics as a share of the torque variance, and what it took."""
+    assert test.v is not None
+    assert test.a is not None
+    found = [term_errors(d.result.model, robot, test) for d in done]
+    outside = [d.result.model.residual_torque(test.q, test.v, test.a) for d in done]
+    return {
+        "median": median_errors(found),
+        "seeds": found,
+        "residual_share": [float((x.var(axis=0) / test.tau.var(axis=0)).mean()) for x in outside],
+        "cpu_seconds": [d.cpu_seconds for d in done],
+        "steps": [d.result.stats["steps"] for d in done],
+    }
 
 
 def judge(models: dict[str, Any]) -> dict[str, bool]:
@@ -62,15 +100,15 @@ def judge(models: dict[str, Any]) -> dict[str, bool]:
         term: all(e is None or e <= limit for e, limit in zip(delan[term], limits, strict=True))
         for term, limits in LIMITS.items()
     }
-    torque = {kind: _mean(models[kind]["median"]["torque"]) for kind in ORDER}
+    torque = {kind: _mean(models[kind]["median"]["torque"]) for kind in PLAN}
     return {
         **within,
         "mass_matrix": delan["mass_matrix"] <= MASS_LIMIT and delan["smallest_eigenvalue"] > 0,
-        "in_15_minutes": max(models["delan"]["seconds"]) <= 900,
-        "delan_ffnn_within_1.5_of_delan": torque["delan-ffnn"] <= 1.5 * torque["delan"],
-        "epsilon_below_1e-3": max(models["delan-ffnn"]["residual_share"]) < 1e-3,
-        "order_as_in_the_paper": torque["delan"] < torque["delan-blackbox"] < torque["ffnn"]
-        and torque["delan-ffnn"] < torque["delan-blackbox"],
+        "in_15_minutes": max(models["delan"]["cpu_seconds"]) <= 900,
+        **{f"{name} within 1.5 of delan": torque[name] <= 1.5 * torque["delan"] for name in AUGMENTED},
+        **{f"epsilon of {name} below 1e-3": max(models[name]["residual_share"]) < 1e-3 for name in AUGMENTED},
+        "delans_below_black_box": max(torque[n] for n in ("delan", *AUGMENTED)) < torque["delan-blackbox"],
+        "black_box_below_ffnn": torque["delan-blackbox"] < torque["ffnn"],
     }
 
 
