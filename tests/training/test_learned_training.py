@@ -19,7 +19,6 @@ from lagnet.models.scales import fit_scales
 from lagnet.models.torque_network import TorqueNetworkSettings
 from lagnet.recordings.recording import Recording
 from lagnet.training.checkpoint import read_checkpoint, write_checkpoint
-from lagnet.training.fit import Task, fit
 from lagnet.training.loss import Errors, errors, penalised
 from lagnet.training.samples import samples_of
 from lagnet.training.settings import TrainingSettings
@@ -144,19 +143,6 @@ def test_gradients_of_the_loss_agree_with_finite_differences():
 
         slope, compiled, h = jax.jit(jax.grad(loss))(0.1), jax.jit(loss), 1e-6
         assert float(slope) == pytest.approx(float((compiled(0.1 + h) - compiled(0.1 - h)) / (2 * h)), rel=1e-5)
-
-
-def test_training_in_stages_leaves_mechanics_as_the_first_stage_found_them():
-    samples = samples_of([pendulum(200)])
-    features, scales = fit_features(samples.q, ("continuous",)), fit_scales(samples.v, samples.a, samples.tau)
-    settings = AugmentedSettings(mechanics_settings=TINY, residual=TorqueNetworkSettings(hidden=(4,)))
-    start = draw(ModelSpec("delan-ffnn", settings, ("swing",), features, scales), jax.random.key(0))
-    nothing = jax.tree.map(lambda _: False, start)
-    residual = replace(nothing, residual=jax.tree.map(lambda _: True, start.residual))
-    done = fit(start, Task(samples, samples, replace(SHORT, steps=100), seed=0, trainable=residual))
-    same = jax.tree.map(np.array_equal, done.dynamics.mechanics, start.mechanics)
-    assert all(jax.tree.leaves(same))
-    assert not np.array_equal(done.dynamics.residual.network.biases[0], start.residual.network.biases[0])
 
 
 def test_joint_types_are_told_by_range():

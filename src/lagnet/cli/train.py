@@ -41,7 +41,8 @@ def command(
     """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
     from lagnet.cli.console import say
     from lagnet.recordings.load import load_recording
-    from lagnet.training.train import stage_files, train
+    from lagnet.training.stages import stage_files
+    from lagnet.training.train import train
 
     read = [load_recording(path, columns=columns) for path in recordings]
     judged = [load_recording(path, columns=columns) for path in holdout or []]

@@ -76,9 +76,9 @@ class ModelSpec:
 
 
 def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
-    below, above = jax.random.split(key)
-    mechanics = _entry(settings.mechanics)[1](below, features, scales, settings.mechanics_settings)
-    epsilon = silenced(make_torque_network(above, features, scales, settings.residual))
+    """Mechanics start as they would without ε, so that with an ε that stays silent they also end there."""
+    mechanics = _entry(settings.mechanics)[1](key, features, scales, settings.mechanics_settings)
+    epsilon = silenced(make_torque_network(jax.random.fold_in(key, 1), features, scales, settings.residual))
     return Augmented(mechanics, epsilon, settings.parity)
 
 

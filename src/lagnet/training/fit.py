@@ -32,6 +32,7 @@ class Task:
         samples: to train on; held_out: to judge by.
         settings: how; seed: of shuffling; penalty: λ of eq. 12.
         trainable: filter true for the leaves to train, None for all.
+        variance: of each joint's torque, in which errors count, shape (dof,) [N² m²]; None for that of the samples.
         checkpoint: file to resume from and write to, None for none; about: fingerprint it must carry.
         progress: called with each report.
     """
@@ -42,6 +43,7 @@ class Task:
     seed: int
     penalty: float = 0.0
     trainable: Any = None
+    variance: np.ndarray | None = None
     checkpoint: Path | None = None
     about: str = ""
     progress: Callable[[Report], None] | None = None
@@ -57,13 +59,30 @@ class Standing(NamedTuple):
     total: Array
 
 
+class BorneOut(NamedTuple):
+    """What held-out torque says about ε: the share kept on each joint, and the error that is left with it.
+
+    Args:
+        shares: 0 … 1; errors: of all held-out torque, as a share of the torque variance; both of length dof.
+    """
+
+    shares: tuple[float, ...]
+    errors: tuple[float, ...]
+
+
 @dataclass(frozen=True)
 class Fitted:
-    """The best model of a training by held-out torque error, that error (mean over joints) and the history."""
+    """The best model of a training by held-out torque error, and how it came about.
+
+    Args:
+        dynamics: the model; error: its held-out error, mean over joints; history: all reports.
+        borne_out: what became of ε, where the model has one.
+    """
 
     dynamics: AbstractDynamics
     error: float
     history: History
+    borne_out: BorneOut | None = None
 
 
 def fit(dynamics: AbstractDynamics, task: Task) -> Fitted:
@@ -89,7 +108,8 @@ class _Run:
     """The moving parts of `fit`."""
 
     def __init__(self, dynamics: AbstractDynamics, task: Task):
-        variance = np.maximum(task.samples.tau.var(axis=0), 1e-18)
+        given = task.samples.tau.var(axis=0) if task.variance is None else task.variance
+        variance = np.maximum(given, 1e-18)
         trainable = eqx.is_array if task.trainable is None else task.trainable
         self.task, self.history, self.began = task, History(), time.monotonic()
         self.loop: Loop = make_loop(

@@ -10,7 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import equinox as eqx
 import jax
 import numpy as np
 
@@ -28,10 +27,9 @@ from lagnet.training.fit import Fitted, Task, fit
 from lagnet.training.history import History, Report
 from lagnet.training.samples import TrainingSamples, samples_of
 from lagnet.training.settings import PENALTIES, TrainingSettings
+from lagnet.training.stages import as_borne_out, in_stages
 
 TRIAL = 0.2  # share of the steps spent on each λ while one is being chosen
-MECHANICS = 0.6  # share of the steps for mechanics when trained in stages
-STAGES = ("mechanics", "epsilon")
 NO_WORSE = 1.05  # among λ whose held-out errors are this near to the best, the largest wins
 
 
@@ -114,11 +112,11 @@ def _fitted(start: AbstractDynamics, task: Task) -> tuple[Fitted, float | None]:
     if not isinstance(start, Augmented):
         return fit(start, task), None
     if task.settings.separation == "stages":
-        return _in_stages(start, task), task.settings.penalty or 0.0
+        return in_stages(start, task), task.settings.penalty or 0.0
     penalty = task.settings.penalty
     if penalty is None:
         penalty = choose_penalty(start, task)
-    return fit(start, replace(task, penalty=penalty)), penalty
+    return as_borne_out(fit(start, replace(task, penalty=penalty)), task), penalty
 
 
 def choose_penalty(start: AbstractDynamics, task: Task) -> float:
@@ -132,39 +130,13 @@ def choose_penalty(start: AbstractDynamics, task: Task) -> float:
     return max(penalty for penalty, error in found.items() if error <= NO_WORSE * best)
 
 
-def _in_stages(start: Augmented, task: Task) -> Fitted:
-    """Mechanics as far as mechanics goes, then ε on what it left; ε stays silent where it makes nothing better."""
-    alone = fit(start.mechanics, _stage(task, None, MECHANICS, 0))
-    first = replace(alone, dynamics=eqx.tree_at(lambda x: x.mechanics, start, alone.dynamics))
-    if first.history.interrupted:
-        return first
-    nothing = jax.tree.map(lambda _: False, start)
-    residual = eqx.tree_at(lambda x: x.residual, nothing, jax.tree.map(eqx.is_array, start.residual))
-    second = fit(first.dynamics, _stage(task, residual, 1.0 - MECHANICS, 1))
-    history = first.history.followed_by(second.history)
-    if second.error < first.error:
-        return replace(second, history=history)
-    return replace(first, history=replace(history, kept_step=first.history.kept_step))
-
-
-def _stage(task: Task, trainable: Any, share: float, place: int) -> Task:
-    """A share of the steps and minutes, with a checkpoint of its own."""
-    settings = task.settings
-    minutes = None if settings.minutes is None else settings.minutes * share
-    part = replace(settings, steps=max(1, round(settings.steps * share)), minutes=minutes)
-    path = None if task.checkpoint is None else stage_files(task.checkpoint)[place]
-    penalty = task.settings.penalty or 0.0
-    return replace(task, settings=part, trainable=trainable, checkpoint=path, penalty=penalty)
-
-
-def stage_files(checkpoint: Path) -> tuple[Path, ...]:
-    """Where the stages of a training keep their states, beside the checkpoint of a training in one piece."""
-    return tuple(checkpoint.with_name(f"{checkpoint.stem}_{name}{checkpoint.suffix}") for name in STAGES)
-
-
 def _stats(spec: ModelSpec, task: Task, fitted: Fitted, penalty: float | None, seconds: float) -> dict[str, Any]:
     reports = fitted.history.reports
     kept = next((r for r in reports if r.step == fitted.history.kept_step), None)
+    epsilon = fitted.borne_out and {
+        "held_out_error": list(fitted.borne_out.errors),
+        "epsilon_shares": list(fitted.borne_out.shares),
+    }
     return {
         "seed": task.seed,
         "seconds": round(seconds, 2),
@@ -179,4 +151,5 @@ def _stats(spec: ModelSpec, task: Task, fitted: Fitted, penalty: float | None, s
         "held_out_samples": len(task.held_out),
         "held_out_error": list(kept.held_out) if kept else None,
         "versions": {name: version(name) for name in ("jax", "equinox", "optax", "numpy")},
+        **(epsilon or {}),
     }
