@@ -13,7 +13,7 @@ from lagnet.diagnosis.problem import OVERSAMPLING, Problem, blurred_speed
 from lagnet.diagnosis.refit import Refit, refit
 from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.spell_fit import SpellFit, fit_spell
-from lagnet.diagnosis.spells import SMEAR, Scan, find_spells, set_aside, too_much
+from lagnet.diagnosis.spells import SMEAR, Scan, Spell, find_spells, set_aside, too_much
 from lagnet.diagnosis.strands import strands_of
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import EDGES, NamedEffect
@@ -26,6 +26,10 @@ LOOKS = 3  # rounds in which spells and lasting effects settle
 LEFT = 0.25  # of the power inside a spell: where a law leaves more, it is not the law
 HELPS = 0.5  # of the error inside a spell that must remain at most, on parts that were not fitted
 UNNAMED = 3000.0  # nats of a spell that no law explains, below which it may be a burst of what lasts
+ELSEWHERE = (
+    10.0  # nats that joints other than the strongest must add: what moves one joint alone is no force on the tool
+)
+LEAST_ELSEWHERE = 0.01  # of all nats
 NOTICED = 0.01  # of the torque: events smaller than this are not claimed
 
 
@@ -78,7 +82,8 @@ def _named(clean: Inquiry, scan: Scan) -> Inquiry:
     lasting = clean.refit.effects
     pairs = [(s, fit_spell(clean.problem, lasting, s, scan)) for s in scan.spells if not s.held_out]
     good = [(s, f) for s, f in pairs if _convinces(f)]
-    others = (s for s in scan.spells if not any(s is t for t, _ in good))
+    bursts = _bursts(pairs)
+    others = (s for s in scan.spells if not any(s is t for t in (*bursts, *(t for t, _ in good))))
     nameless = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
     fits = [f for _, f in good]
     together = _refitted_together(set_aside(clean.problem, nameless), clean, fits)
@@ -104,7 +109,19 @@ def _refitted_together(problem: Problem, clean: Inquiry, fits: Sequence[SpellFit
 
 def _convinces(fit: SpellFit) -> bool:
     gain = fit.without - fit.with_it
-    return fit.left < LEFT and fit.with_it < HELPS * fit.without and gain > NOTICED**2
+    return fit.left < LEFT and fit.with_it < HELPS * fit.without and gain > NOTICED**2 and not _local(fit)
+
+
+def _local(fit: SpellFit) -> bool:
+    """Whether one joint alone speaks for the law: a force or a load on the last link moves others, too."""
+    return fit.elsewhere < max(ELSEWHERE, LEAST_ELSEWHERE * float(np.sum(fit.gains)))
+
+
+def _bursts(pairs: Sequence[tuple[Spell, SpellFit]]) -> list[Spell]:
+    """Spells that come again at one joint alone: lasting physics there, seen only where the arm goes now and then."""
+    local = [(s, f.strongest) for s, f in pairs if _local(f)]
+    joints = [j for _, j in local]
+    return [s for s, j in local if joints.count(j) > 1]
 
 
 def _widened(intervals: dict[str, tuple[float, float]], factor: float, rate: float) -> dict[str, tuple[float, float]]:

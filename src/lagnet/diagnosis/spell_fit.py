@@ -34,6 +34,7 @@ class SpellFit:
         rival: the other law.
         left: share of the power inside beyond noise that the law leaves, 0 to 1.
         over_usual: power that the law leaves inside, over what is usually left in the recordings.
+        gains: shape (dof,), log likelihood that the law gains inside, joint by joint [nats].
         without, with_it: nMSE inside the spell, averaged over the joints that it moves, on parts that were not fitted.
     """
 
@@ -42,8 +43,19 @@ class SpellFit:
     rival: str | None
     left: float
     over_usual: float
+    gains: np.ndarray
     without: float
     with_it: float
+
+    @property
+    def strongest(self) -> int:
+        """The joint at which it gains most."""
+        return int(np.argmax(self.gains))
+
+    @property
+    def elsewhere(self) -> float:
+        """What it gains at all other joints together [nats]."""
+        return float(np.sum(self.gains) - np.max(self.gains))
 
     @property
     def tied(self) -> tuple[str, ...]:
@@ -67,7 +79,7 @@ def fit_spell(problem: Problem, lasting: Sequence[NamedEffect], spell: Spell, sc
     rival = fits[order[1]].effects[0].effect if len(fits) > 1 else None
     odds = float((costs[order[1]] - costs[order[0]]) / np.log(10.0)) if len(fits) > 1 else None
     (strand,) = strands_of(near, near.fit, ())
-    return SpellFit(best, odds, rival, *_left(near, strand, best, scan.power), *_unseen(near, strand, best))
+    return SpellFit(best, odds, rival, *_left(near, strand, best, scan), *_unseen(near, strand, best))
 
 
 def _near(problem: Problem, lasting: Sequence[NamedEffect], spell: Spell) -> Problem:
@@ -139,14 +151,15 @@ def _cut(strand: Strand, rows: np.ndarray) -> Strand:
     return Strand(motion, strand.rest[rows], strand.counts[rows], strand.index)
 
 
-def _left(near: Problem, strand: Strand, effect: NamedEffect, power: np.ndarray) -> tuple[float, float]:
-    """What a law leaves inside, as a share of what was there, and over what is usual."""
+def _left(near: Problem, strand: Strand, effect: NamedEffect, scan: Scan) -> tuple[float, float, np.ndarray]:
+    """What a law leaves inside, as a share of what was there, and over what is usual; what it gains at each joint."""
     (after,) = strands_of(near, near.fit, (effect,))
     start, end = effect.interval or (0.0, 0.0)
     rows = _inside(strand, start, end)
     noise = max(1.0, float(strand.counts[rows].sum()))
-    before, rest = (float(np.sum((s.rest[rows] * s.counts[rows]) ** 2 / power)) for s in (strand, after))
-    return float(np.clip((rest - noise) / max(before - noise, 1e-300), 0.0, 1.0)), rest / noise
+    before, rest = (np.sum((s.rest[rows] * s.counts[rows]) ** 2, axis=0) / scan.power for s in (strand, after))
+    share = float(np.clip((rest.sum() - noise) / max(before.sum() - noise, 1e-300), 0.0, 1.0))
+    return share, float(rest.sum()) / noise, 0.5 * (before - rest) / scan.inflation
 
 
 def _unseen(near: Problem, strand: Strand, effect: NamedEffect) -> tuple[float, float]:
