@@ -10,13 +10,15 @@ from lagnet.diagnosis.evidence_of import held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.settle import without
-from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect, torque_with
 
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
 MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must explain more than that, predictable or not
+WORSE = (
+    1.5  # times the nominal error on held-out motion: names that together do that to a joint are none of its physics
+)
 
 
 def withdraw(
@@ -28,26 +30,48 @@ def withdraw(
     noise: np.ndarray,
     seed: int,
 ) -> Found:
-    """The selection less the local effects of joints where much is left that depends on the state of the arm.
+    """The selection less the names that do not explain the joints they help at.
+
+    A name is held to the joints where it helps, and stands if it is good at one of them: another joint may hold
+    physics of its own. A joint that the names together make worse than the nominal model loses those whose torque there
+    is larger than the mismatch, since they cancel each other on the fitted motion alone.
 
     Args:
         effects: the selection refitted by the exact laws.
         noise: shape (dof,), noise floor [N m].
     """
+    harmed = _harmed(problem, effects, noise)
     shares = _left_shares(problem, effects, noise)
     needed = {j: s for j, s in shares.items() if s > MOST}
     needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
-    if not needed:
+    if not needed and not harmed:
         return found
     sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
     for index in found.selection:
-        h = bench.library.hypotheses[index]
-        if h.joint is None or effect_named(h.effect).reaches_all:
-            continue
-        if h.joint in needed and parts[index].share < needed[h.joint]:
+        h, part = bench.library.hypotheses[index], parts[index]
+        good = any(part.shares[j] >= needed.get(j, 0.0) for j in part.at_joints)
+        if not good or any((h.effect, h.joint) in names for names in harmed.values()):
             found = without(bench, found, index)
     return found
+
+
+def _harmed(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray) -> dict[int, list]:
+    """Joints that the names make worse on held-out motion, with the names whose torque there exceeds the mismatch."""
+    before, after = (np.mean(_stack(problem, problem.holdout, e) ** 2, axis=0) for e in ((), effects))
+    worse = np.flatnonzero(after > WORSE * np.maximum(before, noise**2))
+    if not worse.size:
+        return {}
+    alone = {(e.effect, e.joint): _added(problem, e) for e in effects}
+    largest = {int(j): max(p[j] for p in alone.values()) for j in worse}
+    limits = {j: min(max(before[j], noise[j] ** 2), largest[j]) for j in largest}
+    return {j: [name for name, power in alone.items() if power[j] >= limits[j]] for j in largest}
+
+
+def _added(problem: Problem, effect: NamedEffect) -> np.ndarray:
+    """Mean squared torque of one effect on held-out motion, shape (dof,)."""
+    left, alone = (_stack(problem, problem.holdout, e) for e in ((), (effect,)))
+    return np.mean((left - alone) ** 2, axis=0)
 
 
 def _left_shares(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray) -> dict[int, float]:

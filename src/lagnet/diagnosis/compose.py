@@ -136,13 +136,11 @@ def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence
 
 def _unexplained(inquiry: Inquiry, joint: int) -> Unexplained:
     problem, left = inquiry.problem, inquiry.leftovers[joint]
-    before, noise = power_of(*stacked(problem, problem.holdout), joint), float(inquiry.noise[joint] ** 2)
-    share = float(np.clip(max(0.0, left.power - noise) / max(before - noise, 1e-300), 0.0, 1.0)) if left.above else 0.0
     depends_on = left.ceiling.depends_on
     if left.above and "time" not in depends_on and changes_in_time(inquiry, joint):
         depends_on = ("time", *depends_on)
     formula = left.shape.formula if left.shape else None
-    return Unexplained(problem.joints[joint], left.above, share, depends_on, formula)
+    return Unexplained(problem.joints[joint], left.above, left.share, depends_on, formula)
 
 
 def _fit(inquiry: Inquiry, joint: int) -> JointFit:

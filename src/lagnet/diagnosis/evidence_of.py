@@ -10,18 +10,22 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Fit, Workbench, fit_selection, take_off
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HeldOut:
     """Held-out errors of one effect, at its joint or averaged over the joints that it reaches.
 
     Args:
         without, with_it: nMSE.
         share: of the mismatch that it alone explains, 0 to 1.
+        at_joints: joints where it helps.
+        shares: shape (dof,), share of each joint's mismatch that it alone explains.
     """
 
     without: float
     with_it: float
     share: float
+    at_joints: tuple[int, ...]
+    shares: np.ndarray
 
 
 def unseen_nmse(bench: Workbench, fit: Fit, unseen: Workbench, scale: np.ndarray) -> np.ndarray:
@@ -53,6 +57,9 @@ def held_out_evidence(
         far = bench.library.hypotheses[index].law.reaches_all
         at = np.flatnonzero(without > 1.02 * with_all) if far else np.array([joint])
         at = at if at.size else np.arange(len(scale))
-        share = float(np.clip(np.sum((without - with_all)[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
-        out[index] = HeldOut(float(np.mean(without[at])), float(np.mean(with_all[at])), share)
+        gained = without - with_all
+        share = float(np.clip(np.sum(gained[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
+        shares = np.clip(gained / np.maximum(nominal, 1e-300), 0.0, 1.0)
+        errors = float(np.mean(without[at])), float(np.mean(with_all[at]))
+        out[index] = HeldOut(*errors, share, tuple(int(j) for j in at), shares)
     return out

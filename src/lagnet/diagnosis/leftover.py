@@ -16,6 +16,7 @@ from lagnet.models.corrected import torque_with
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Inquiry
 
+HALVES = 6  # parts of the fitted motion that predict as many others
 ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant
 
 
@@ -39,14 +40,16 @@ class JointLeftover:
     """What is left at one joint.
 
     Args:
-        above: whether it exceeds the noise.
+        above: whether it exceeds the noise, on held-out motion or, where that does not reach it, on the fitted one.
         power: mean square on held-out samples [N² m²].
+        share: of the joint's mismatch beyond the noise that is left, on the motion where it exceeds it, 0 to 1.
         ceiling: how much of it any smooth function predicts; nothing where it is noise.
         shape: how it looks against its strongest signal; None where it is noise or nothing predicts it.
     """
 
     above: bool
     power: float
+    share: float
     ceiling: Ceiling
     shape: LeftoverShape | None
 
@@ -80,9 +83,33 @@ def power_of(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
 
 
 def _joint(inquiry: Inquiry, after: Leftover, joint: int) -> JointLeftover:
-    power = power_of(*after.holdout, joint)
-    if not np.sqrt(power) > ABOVE * inquiry.noise[joint]:
-        return JointLeftover(False, power, Ceiling(0.0, ()), None)
+    power, limit = power_of(*after.holdout, joint), (ABOVE * inquiry.noise[joint]) ** 2
+    problem = inquiry.problem
+    if power > limit:
+        share = _share(inquiry, problem.holdout, power, joint)
+        return JointLeftover(True, power, share, *_look_at(inquiry, after, joint))
+    fitted = power_of(*after.fit, joint)
+    if fitted > limit:
+        share = _share(inquiry, problem.fit, fitted, joint)
+        return JointLeftover(True, power, share, *_look_at(inquiry, _within_fit(after), joint))
+    return JointLeftover(False, power, 0.0, Ceiling(0.0, ()), None)
+
+
+def _share(inquiry: Inquiry, pieces: Sequence[Piece], power: float, joint: int) -> float:
+    before, noise = power_of(*stacked(inquiry.problem, pieces), joint), float(inquiry.noise[joint] ** 2)
+    return float(np.clip(max(0.0, power - noise) / max(before - noise, 1e-300), 0.0, 1.0))
+
+
+def _within_fit(after: Leftover) -> Leftover:
+    """The fitted motion alone: every second part of it is predicted from the others."""
+    rest, counts = after.fit
+    parts = np.array_split(np.arange(len(rest)), 2 * HALVES)
+    seen, unseen = np.concatenate(parts[0::2]), np.concatenate(parts[1::2])
+    halves = [(rest[rows], counts[rows]) for rows in (seen, unseen)]
+    return Leftover(halves[0], halves[1], after.seen.only(seen), after.seen.only(unseen))
+
+
+def _look_at(inquiry: Inquiry, after: Leftover, joint: int) -> tuple[Ceiling, LeftoverShape | None]:
     (rest, counts), (test, test_counts) = after.fit, after.holdout
     seen, truth = rest[:, joint], test[:, joint] * test_counts[:, joint]
     ceiling = find_ceiling(after.seen, seen, counts[:, joint], after.unseen, truth, inquiry.seed)
@@ -91,4 +118,4 @@ def _joint(inquiry: Inquiry, after: Leftover, joint: int) -> JointLeftover:
         signals = (after.seen.only(counts[:, joint]), after.unseen.only(test_counts[:, joint]))
         rests = (seen[counts[:, joint]], test[test_counts[:, joint], joint])
         shape = find_shape(signals, rests, ceiling.depends_on, inquiry.problem.slow)
-    return JointLeftover(True, power, ceiling, shape)
+    return ceiling, shape
