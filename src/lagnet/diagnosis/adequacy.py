@@ -8,7 +8,7 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
 from lagnet.diagnosis.evidence_of import held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
 from lagnet.models.corrected import NamedEffect, torque_with
 
@@ -33,7 +33,8 @@ def withdraw(
     """The selection less the names that do not explain the joints they help at.
 
     A name is held to the joints where it helps, and stands if it is good at one of them: another joint may hold
-    physics of its own. A joint that the names together make worse than the nominal model loses those whose torque there
+    physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
+    fitted one. A joint that the names together make worse than the nominal model loses those whose torque there
     is larger than the mismatch, since they cancel each other on the fitted motion alone.
 
     Args:
@@ -41,8 +42,9 @@ def withdraw(
         noise: shape (dof,), noise floor [N m].
     """
     harmed = _harmed(problem, effects, noise)
-    shares = _left_shares(problem, effects, noise)
-    needed = {j: s for j, s in shares.items() if s > MOST}
+    shares = _left_shares(problem, problem.holdout, effects, noise)
+    fitted = _left_shares(problem, problem.fit, effects, noise)
+    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items() if min(s, fitted.get(j, 0.0)) > MOST}
     needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
     if not needed and not harmed:
         return found
@@ -74,11 +76,13 @@ def _added(problem: Problem, effect: NamedEffect) -> np.ndarray:
     return np.mean((left - alone) ** 2, axis=0)
 
 
-def _left_shares(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray) -> dict[int, float]:
-    """Joints where much mismatch is left above the noise on held-out motion, with its share of the joint's mismatch."""
+def _left_shares(
+    problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...], noise: np.ndarray
+) -> dict[int, float]:
+    """Joints where much mismatch is left above the noise, with its share of the joint's mismatch."""
     if not effects:
         return {}
-    nominal, left = _stack(problem, problem.holdout, ()), _stack(problem, problem.holdout, effects)
+    nominal, left = _stack(problem, pieces, ()), _stack(problem, pieces, effects)
     shares = {}
     for joint in range(problem.n_dof):
         before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
@@ -104,6 +108,6 @@ def _predictable(
     }
 
 
-def _stack(problem: Problem, pieces: tuple, effects: tuple[NamedEffect, ...]) -> np.ndarray:
+def _stack(problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...]) -> np.ndarray:
     parts = [problem.reduce(p, p.tau - torque_with(p.motion(problem), effects)) * p.counts for p in pieces]
     return np.concatenate(parts)
