@@ -17,7 +17,7 @@ help:
 	@echo "make types    pyright"
 	@echo "make imports  the order of the rooms"
 	@echo "make wheel    build dist/*.whl"
-	@echo "make docs     write again what is generated: catalogue, figures from result files"
+	@echo "make docs     write again what is generated: catalogue, confusion matrix, figures from result files"
 	@echo "make lock     write requirements.lock from .venv"
 
 # requirements.lock pins what was tried together; the package itself is installed in place, for both targets alike.
@@ -52,6 +52,7 @@ wheel: $(STAMP)
 
 docs: $(STAMP)
 	$(BIN)/python docs/make_catalogue.py
+	$(BIN)/python docs/make_confusion.py
 	$(BIN)/python docs/fill_figures.py
 
 lock: $(STAMP)

@@ -99,7 +99,7 @@ def test_commands_and_options_exist(page: Path) -> None:
         assert isinstance(command, typer.core.TyperGroup) or set(used) <= known, f"{page_id(page)}: lagnet {name}{rest}"
 
 
-@pytest.mark.parametrize("script", ["make_catalogue.py", "fill_figures.py"])
+@pytest.mark.parametrize("script", ["make_catalogue.py", "make_confusion.py", "fill_figures.py"])
 def test_what_is_generated_is_current(script: str) -> None:
     done = subprocess.run(
         [sys.executable, str(ROOT / "docs" / script), "--check"], capture_output=True, text=True, check=False
