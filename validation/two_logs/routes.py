@@ -1,0 +1,65 @@
+"""The two routes of `lagnet diagnose`: `--robot ur5`, and `--simulated` with the simulator's recordings."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import lagnet
+from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.from_simulated import learn_nominal
+from validation.plants.catalogue.plan import Plan
+from validation.plants.catalogue.simulate import simulate
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A nominal model and how it came about.
+
+    Args:
+        name: "urdf" or "simulated".
+        model: what recordings are held against.
+        missed: shape (dof,), torque that the model is known to miss [N m]; None for the URDF.
+        told: what there is to say of the model.
+    """
+
+    name: str
+    model: Any
+    missed: np.ndarray | None
+    told: dict[str, Any]
+
+    def verdict(self, plan: Plan, folder: Path) -> dict:
+        """What `lagnet diagnose` writes of a plant's recordings, with joints by the names that the plant gives them."""
+        read = [lagnet.load_recording(str(folder / f"{name}.csv"), robot=self.model) for name in plan.recordings]
+        began = time.process_time()
+        verdict = diagnose(read[:-1], self.model, read[-1:], nominal_error=self.missed).verdict.to_dict()
+        names = dict(zip(verdict["nominal"]["joints"], lagnet.load_robot(plan.robot).joints, strict=True))
+        for entry in (*verdict["effects"], *verdict["unexplained"]):
+            entry["joint"] = names.get(entry["joint"])
+        return verdict | {"processor_seconds": time.process_time() - began}
+
+
+def by_urdf(robot: str) -> Route:
+    """The route with the robot's file."""
+    return Route("urdf", lagnet.load_robot(robot), None, {"kind": "urdf"})
+
+
+def by_simulated(plan: Plan, seed: int = 0) -> Route:
+    """The route without: as the command learns it, once, since all plants have the same simulator."""
+    with tempfile.TemporaryDirectory() as folder:
+        simulate(plan, Path(folder))
+        read = [lagnet.load_recording(str(Path(folder) / f"{name}.csv")) for name in plan.recordings]
+    began = time.process_time()
+    learned = learn_nominal(read, seed=seed)
+    told = {
+        "kind": learned.kind,
+        "held_out_share_of_torque_variance": learned.share.tolist(),
+        "held_out_rms_error_nm": learned.error.tolist(),
+        "processor_seconds": time.process_time() - began,
+    }
+    return Route("simulated", learned.model, learned.error, told)
