@@ -15,7 +15,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from lagnet.models import euler_lagrange
 from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw
@@ -80,7 +79,7 @@ def step_times(kind: str, repeats: int) -> dict[str, Any]:
         compiled = jax.jit(jax.grad(loss))
         return lambda: compiled(arm)
 
-    ours, usual = gradient(euler_lagrange.inverse_dynamics), gradient(hessian_inverse_dynamics)
+    ours, usual = gradient(type(dynamics.lagrangian).inverse_dynamics), gradient(hessian_inverse_dynamics)
     return paired_times(ours, usual, repeats)
 
 

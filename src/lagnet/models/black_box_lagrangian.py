@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
+from lagnet.models import euler_lagrange
 from lagnet.models.features import JointFeatures
 from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
 from lagnet.models.networks import OrderedNetwork, check_widths, make_network
@@ -50,6 +51,9 @@ class BlackBoxLagrangian(AbstractLagrangian):
 
     def potential_energy(self, q: Vector) -> Scalar:
         return -self.lagrangian(q, jnp.zeros_like(q))
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        return euler_lagrange.inverse_dynamics(self, q, v, a)
 
     def momentum(self, q: Vector, v: Vector) -> Vector:
         return jax.grad(self.lagrangian, argnums=1)(q, v)

@@ -15,7 +15,7 @@ class Conservative(AbstractDynamics):
     lagrangian: AbstractLagrangian
 
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
-        return euler_lagrange.inverse_dynamics(self.lagrangian, q, v, a)
+        return self.lagrangian.inverse_dynamics(q, v, a)
 
     def forward_dynamics(self, q: Vector, v: Vector, tau: Vector) -> Vector:
         return euler_lagrange.forward_dynamics(self.lagrangian, q, v, tau)
@@ -42,7 +42,7 @@ class FreeLagrangian(AbstractDynamics):
     lagrangian: AbstractLagrangian
 
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
-        return euler_lagrange.inverse_dynamics(self.lagrangian, q, v, a)
+        return self.lagrangian.inverse_dynamics(q, v, a)
 
     def forward_dynamics(self, q: Vector, v: Vector, tau: Vector) -> Vector:
         return solve_for_acceleration(lambda a: self.inverse_dynamics(q, v, a), tau)
@@ -60,6 +60,6 @@ class FreeLagrangian(AbstractDynamics):
         return euler_lagrange.gravity_torque(self.lagrangian, q)
 
     def residual_torque(self, q: Vector, v: Vector, a: Vector) -> Vector:
-        at_speed = euler_lagrange.inverse_dynamics(self.lagrangian, q, v, a)
-        bias = euler_lagrange.inverse_dynamics(self.lagrangian, q, v, jnp.zeros_like(a))
+        at_speed = self.lagrangian.inverse_dynamics(q, v, a)
+        bias = self.lagrangian.inverse_dynamics(q, v, jnp.zeros_like(a))
         return at_speed - bias - self.mass_matrix(q) @ a

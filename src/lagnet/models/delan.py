@@ -17,6 +17,7 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.errors import ModelError
+from lagnet.models import euler_lagrange
 from lagnet.models.chain_network import ChainNetwork, make_chain_network
 from lagnet.models.features import JointFeatures
 from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
@@ -86,6 +87,9 @@ class Delan(AbstractLagrangian):
         states = self.height(self.features(q), self.start, (None,) * len(self.weights))
         heads = jnp.sum(self.weights * jnp.stack(states), axis=1)
         return heads @ np.asarray(self.scales.torque, heads.dtype)
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        return euler_lagrange.inverse_dynamics(self, q, v, a)
 
     def momentum(self, q: Vector, v: Vector) -> Vector:
         speeds, pull_back = jax.vjp(lambda x: self.body_speeds(q, x), v)

@@ -32,5 +32,9 @@ class AbstractLagrangian(eqx.Module):
         """Joint momentum p = ∂L/∂v [N m s], given in closed form where T allows it."""
 
     @abstractmethod
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        """Torque [N m] that follows from both energies: `euler_lagrange.inverse_dynamics`, or the same by hand."""
+
+    @abstractmethod
     def mass_matrix(self, q: Vector) -> Matrix:
         """Joint-space inertia ∂p/∂v at rest, shape (dof, dof) [kg m²]."""

@@ -60,12 +60,34 @@ class PerceptronDelan(AbstractLagrangian):
 
     def factor(self, q: Vector) -> Matrix:
         """Upper-triangular U(q) with H = U Uᵀ, rows scaled by the inertia that torque and acceleration suggest."""
-        n = q.shape[0]
-        raw = self.inertia(self.features(q)).reshape(n, n)
+        return self._factor(self.inertia(self.features(q)))[0]
+
+    def _factor(self, raw: Array) -> tuple[Matrix, Matrix]:
+        """U from the outputs of the network, and the derivative of each entry by its output."""
+        n = len(self.scales.inertia)
         # Masks, not scattered entries: a scatter and its derivatives cost more here than both networks.
         upper, diagonal = np.triu(np.ones((n, n)), 1).astype(raw.dtype), np.eye(n, dtype=raw.dtype)
-        factor = raw * upper + (jax.nn.softplus(raw) + self.settings.floor) * diagonal
-        return factor * np.sqrt(np.asarray(self.scales.inertia)).astype(raw.dtype)[:, None]
+        root = np.sqrt(np.asarray(self.scales.inertia)).astype(raw.dtype)[:, None]
+        own = raw[:: n + 1, None]
+        factor = raw.reshape(n, n) * upper + (jax.nn.softplus(own) + self.settings.floor) * diagonal
+        bent = jnp.asarray(upper) + jax.nn.sigmoid(own) * diagonal
+        return factor * root, bent * root
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        """Torque [N m]: one pass through the network of U with its change along v, one back, one of V and back.
+
+        Sums of products in place of products of small matrices, which cost more than both networks in a batch.
+        """
+        inputs, slopes = jax.jvp(self.features, (q,), (jnp.ones_like(q),))
+        owner = np.eye(len(q), dtype=q.dtype)[:, np.asarray(self.features.owner)]
+        raw, along, back = self.inertia.linearised(inputs)
+        factor, bent = self._factor(raw)
+        rate = bent * along(slopes * (v @ owner)).reshape(bent.shape)
+        speed = jnp.sum(factor * v[:, None], axis=0)
+        change = jnp.sum(rate * v[:, None] + factor * a[:, None], axis=0)
+        force = back((bent * v[:, None] * speed).ravel())
+        pull = self.potential.linearised(inputs)[2](jnp.asarray(self.scales.torque, raw.dtype))
+        return jnp.sum(rate * speed + factor * change, axis=1) + owner @ (slopes * (pull - force))
 
     def kinetic_energy(self, q: Vector, v: Vector) -> Scalar:
         return 0.5 * jnp.sum((self.factor(q).T @ v) ** 2)
