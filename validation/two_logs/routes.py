@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 
 import lagnet
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.from_simulated import learn_nominal
+from lagnet.models.loading import load_any
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.simulate import simulate
 
@@ -49,17 +52,28 @@ def by_urdf(robot: str) -> Route:
     return Route("urdf", lagnet.load_robot(robot), None, {"kind": "urdf"})
 
 
-def by_simulated(plan: Plan, seed: int = 0) -> Route:
-    """The route without: as the command learns it, once, since all plants have the same simulator."""
-    with tempfile.TemporaryDirectory() as folder:
-        simulate(plan, Path(folder))
-        read = [lagnet.load_recording(str(Path(folder) / f"{name}.csv")) for name in plan.recordings]
-    began = time.process_time()
-    learned = learn_nominal(read, seed=seed)
-    told = {
-        "kind": learned.kind,
-        "held_out_share_of_torque_variance": learned.share.tolist(),
-        "held_out_rms_error_nm": learned.error.tolist(),
-        "processor_seconds": time.process_time() - began,
-    }
-    return Route("simulated", learned.model, learned.error, told)
+def by_simulated(plan: Plan, folder: Path, seed: int = 0) -> Route:
+    """The route without: as the command learns it, once, since all plants have the same simulator; kept in a folder."""
+    notes = folder / "told.json"
+    if not notes.exists():
+        with tempfile.TemporaryDirectory() as logs:
+            simulate(plan, Path(logs))
+            read = [lagnet.load_recording(str(Path(logs) / f"{name}.csv")) for name in plan.recordings]
+        began = time.process_time()
+        learned = learn_nominal(read, seed=seed)
+        learned.model.save(folder / "model")
+        told = {
+            "kind": learned.kind,
+            "held_out_share_of_torque_variance": learned.share.tolist(),
+            "held_out_rms_error_nm": learned.error.tolist(),
+            "processor_seconds": time.process_time() - began,
+        }
+        notes.write_text(json.dumps(told))
+    told = json.loads(notes.read_text())
+    return Route("simulated", load_any(str(folder / "model")), np.array(told["held_out_rms_error_nm"]), told)
+
+
+def compile_once(folder: Path) -> None:
+    """Keep compiled code on disk: every diagnosis would compile the functions of the learned arm anew."""
+    jax.config.update("jax_compilation_cache_dir", str(folder))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)

@@ -25,7 +25,7 @@ from validation.plants.catalogue.simulate import simulate
 from validation.plants.catalogue.witness import Witness, read_witness
 from validation.two_logs.figure import draw
 from validation.two_logs.plants import KINDS, real_arm, simulator
-from validation.two_logs.routes import Route, by_simulated, by_urdf
+from validation.two_logs.routes import Route, by_simulated, by_urdf, compile_once
 
 HERE = Path(__file__).resolve().parent
 FULL, QUICK = 24, 2
@@ -43,7 +43,6 @@ SHOWN = (
     "right_joint",
     "claims_on_plants_with_nothing_hidden",
     "plants_with_nothing_hidden",
-    "median_processor_seconds",
 )
 CODE = fingerprint()  # of the source as it is when the study starts
 
@@ -110,10 +109,12 @@ def main() -> int:
     given = parser.parse_args()
     out = given.out or Path("out") / ("two_logs_quick" if given.quick else "two_logs")
     count, duration = (QUICK, SHORT) if given.quick else (given.plants, LONG)
-    routes = [by_urdf("ur5"), by_simulated(simulator(duration))]
+    kept = out.resolve() / CODE[:12]
+    compile_once(kept / "compiled")
+    routes = [by_urdf("ur5"), by_simulated(simulator(duration), kept / f"learned_from_{duration:g}_s")]
     print("learned:", routes[1].told, flush=True)
     plans = [real_arm(given.seed, n, duration) for n in range(count)]
-    each = list(scores(plans, routes, out / CODE[:12] / f"seed_{given.seed}"))
+    each = list(scores(plans, routes, kept / f"seed_{given.seed}_{duration:g}_s"))
     by_route = {r.name: [s[r.name] for s in each] for r in routes}
     study = {"command": "python -m validation.two_logs.study", "seed": given.seed, "plants": count, "kinds": KINDS}
     return 0 if report(by_route, study, routes[1].told, out if given.quick or count < FULL else HERE) else 1
