@@ -45,3 +45,21 @@ def test_a_free_arm_held_against_its_own_calibration_has_nothing_left(plant, arm
     again = diagnose([free.record(10)], corrected, [free.record(11)])
     assert again.effects == ()
     assert not again.verdict.found
+
+
+def test_what_a_calibration_left_open_is_no_news_of_the_next_recordings(plant, arm, at, names) -> None:
+    odd = at(1, lambda q, v, a, t: 3.0 * np.tanh(4.0 * q) * np.cos(9.0 * v))
+    first = plant(odd)
+    calibration = diagnose([first.record(1), first.record(2)], arm, [first.record(3)])
+    assert calibration.corrected.left is not None
+    assert calibration.corrected.left[1] > 5.0 * calibration.corrected.left[0]
+    later = plant(odd, at(1, lambda q, v, a, t: 0.4 * q), at(0, lambda q, v, a, t: 3.0 * v))
+    second = diagnose([later.record(4), later.record(5)], calibration.corrected, [later.record(6)])
+    assert names(second) == {("viscous_friction", arm.joints[0])}
+
+
+def test_an_error_that_the_nominal_model_is_known_to_have_hides_what_is_smaller(plant, arm, at, names) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.4 * v))
+    recordings = [real.record(1), real.record(2)], arm, [real.record(3)]
+    assert names(diagnose(*recordings)) == {("viscous_friction", arm.joints[1])}
+    assert diagnose(*recordings, nominal_error=np.full(3, 2.0)).effects == ()

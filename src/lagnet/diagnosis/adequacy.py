@@ -16,9 +16,8 @@ MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts dou
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
 MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must explain more than that, predictable or not
-WORSE = (
-    1.5  # times the nominal error on held-out motion: names that together do that to a joint are none of its physics
-)
+WORSE = 1.5  # times the nominal error on held-out motion: names that together do that are not the joint's physics
+OUTGROWS = 0.5  # of the power that the nominal model is known to miss: what explains less is not told apart from it
 
 
 def withdraw(
@@ -34,8 +33,9 @@ def withdraw(
 
     A name is held to the joints where it helps, and stands if it is good at one of them: another joint may hold
     physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
-    fitted one. A joint that the names together make worse than the nominal model loses those whose torque there
-    is larger than the mismatch, since they cancel each other on the fitted motion alone.
+    fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it. A joint that
+    the names together make worse than the nominal model loses those whose torque there is larger than the mismatch,
+    since they cancel each other on the fitted motion alone.
 
     Args:
         effects: the selection refitted by the exact laws.
@@ -46,16 +46,25 @@ def withdraw(
     fitted = _left_shares(problem, problem.fit, effects, noise)
     needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items() if min(s, fitted.get(j, 0.0)) > MOST}
     needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
-    if not needed and not harmed:
+    if not needed and not harmed and problem.missed is None:
         return found
+    ignored = _ignored(problem)
     sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
     for index in found.selection:
         h, part = bench.library.hypotheses[index], parts[index]
-        good = any(part.shares[j] >= needed.get(j, 0.0) for j in part.at_joints)
+        good = any(part.shares[j] >= max(needed.get(j, 0.0), ignored[j]) for j in part.at_joints)
         if not good or any((h.effect, h.joint) in names for names in harmed.values()):
             found = without(bench, found, index)
     return found
+
+
+def _ignored(problem: Problem) -> np.ndarray:
+    """Share of each joint's held-out mismatch that may be the nominal model's own ignorance, shape (dof,)."""
+    if problem.missed is None:
+        return np.zeros(problem.n_dof)
+    power = np.mean(_stack(problem, problem.holdout, ()) ** 2, axis=0)
+    return OUTGROWS * problem.missed**2 / np.maximum(power, 1e-300)
 
 
 def _harmed(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray) -> dict[int, list]:

@@ -20,7 +20,7 @@ from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.grams import collect_grams
-from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over
+from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over, missed_by
 from lagnet.diagnosis.library import Library, build_library
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
@@ -142,7 +142,7 @@ def diagnose(
         holdout: recordings that are not fitted; None: the last fifth of each recording.
         bandwidth: of the zero-phase low-pass on torques [Hz]; None: chosen from the data.
         nominal_error: shape (dof,), torque that the nominal model is known to miss, such as a learned one [N m]; it
-            counts into the noise floor.
+            counts into the noise floor. None: what an earlier diagnosis left, if the model comes from one.
         seed: of everything random.
 
     Raises:
@@ -154,11 +154,13 @@ def diagnose(
     unseen = condition(held, fit.bandwidth)
     problem = sharpen(pose_problem(robot, fit, unseen, ends_of))
     noise = noise_floor(problem, fit, seed)
-    if nominal_error is not None:
-        noise = np.hypot(noise, nominal_error)
+    known = nominal_error if nominal_error is not None else getattr(robot, "left", None)
+    if known is not None:
+        problem, noise = replace(problem, missed=np.asarray(known, dtype=float)), np.hypot(noise, known)
     inquiry = inquire(problem, fit, unseen, noise, seed)
     inquiry = settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
-    corrected = CorrectedModel(robot, inquiry.effects, inquiry.problem.slow, inquiry.problem.held)
+    seen = inquiry.problem
+    corrected = CorrectedModel(robot, inquiry.effects, seen.slow, seen.held, left=missed_by(inquiry))
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
     return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen, ends_of, inquiry.standing)
 

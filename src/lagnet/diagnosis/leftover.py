@@ -71,6 +71,12 @@ def joint_leftovers(inquiry: Inquiry, after: Leftover) -> tuple[JointLeftover, .
     return tuple(_joint(inquiry, after, j) for j in range(inquiry.problem.n_dof))
 
 
+def missed_by(inquiry: Inquiry) -> np.ndarray:
+    """Torque beyond noise that the corrected model misses on held-out motion, root mean square, shape (dof,) [N m]."""
+    power = np.array([joint.power for joint in inquiry.leftovers])
+    return np.sqrt(np.maximum(power - inquiry.noise**2, 0.0))
+
+
 def stacked(problem: Problem, pieces: Sequence[Piece]) -> tuple[np.ndarray, np.ndarray]:
     """Residual of the nominal model and which samples count, shape (n, dof)."""
     rest = np.concatenate([problem.residual(p) for p in pieces])

@@ -62,6 +62,7 @@ class Problem:
         joints: names.
         scale: shape (dof,), standard deviation of the recorded torque [N m].
         held: shape (dof,), share of the dry friction that stays at rest; None while it is not known.
+        missed: shape (dof,), torque that the nominal model is known to miss, root mean square; None: not known [N m].
     """
 
     nominal: InverseDynamics
@@ -73,6 +74,7 @@ class Problem:
     joints: tuple[str, ...]
     scale: np.ndarray = field(default_factory=lambda: np.ones(0))
     held: np.ndarray | None = None
+    missed: np.ndarray | None = None
 
     @property
     def n_dof(self) -> int:

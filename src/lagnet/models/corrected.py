@@ -120,6 +120,7 @@ class CorrectedModel:
         sha256: checksum of what it was read from.
         recording: index of the fitted recording whose motion it is asked for; None: any other motion, where nothing
             acts that lasts for a while only.
+        left: shape (dof,), torque beyond noise that it missed on held-out motion, root mean square; None: not known.
     """
 
     nominal: InverseDynamics | Any
@@ -129,6 +130,7 @@ class CorrectedModel:
     source: str = ""
     sha256: str = ""
     recording: int | None = None
+    left: JointVector | None = None
     kind: str = field(default="corrected", init=False)
 
     def __post_init__(self) -> None:

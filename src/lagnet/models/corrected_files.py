@@ -35,7 +35,8 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "joints": list(model.joints),
         "nominal": nominal,
         "slow": [float(s) for s in model.slow],
-        "held": None if model.held is None else [float(s) for s in model.held],
+        "held": _as_list(model.held),
+        "left": _as_list(model.left),
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
             | ({} if e.recording is None else {"recording": e.recording})
@@ -94,16 +95,29 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> Corre
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
-        held = None if text.get("held") is None else np.array([float(s) for s in text["held"]])
+        held, left = (_as_row(text.get(name)) for name in ("held", "left"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
     seen = file if file.is_file() else file / FILE
     if expected and (not seen.is_file() or _checksum(seen) != expected):
         raise ModelError("the nominal model beside it was changed or is missing", where=str(seen))
     nominal = load_any(file)
-    if tuple(nominal.joints) != joints or {len(slow), len(held) if held is not None else len(slow)} != {len(joints)}:
+    if tuple(nominal.joints) != joints or any(len(x) != len(joints) for x in (slow, held, left) if x is not None):
         raise ModelError("its joints are not those of its nominal model", where=str(where))
-    return CorrectedModel(nominal, effects, slow, held, source=str(folder), sha256=_checksum(where))
+    return CorrectedModel(nominal, effects, slow, held, source=str(folder), sha256=_checksum(where), left=left)
+
+
+def _as_list(row: np.ndarray | None) -> list[float] | None:
+    return None if row is None else [float(x) for x in row]
+
+
+def _as_row(entry: Any) -> np.ndarray | None:
+    if entry is None:
+        return None
+    row = np.array([float(x) for x in entry])
+    if not np.isfinite(row).all():
+        raise ValueError("a number is not finite")
+    return row
 
 
 def _read(where: Path) -> dict[str, Any]:
