@@ -1,4 +1,4 @@
-"""Look for the size at which an effect is found: halve it when found, double it when missed, fit a curve at the end."""
+"""Look for the size at which an effect is found: halve it when found, double it when missed, plant by plant."""
 
 from __future__ import annotations
 
@@ -8,56 +8,66 @@ from itertools import pairwise
 
 import numpy as np
 
+from validation.detection_limits.plants import Condition
+
 START, FLOOR, ROOF = 0.02, 3e-4, 0.4  # share of the joint's torque
 FIRST_FACTOR, FACTOR = 4.0, 2.0
-WIDTHS = np.geomspace(0.1, 1.5, 15)  # of the curve, in natural logarithms of the size
-PLACES = np.log(np.geomspace(1e-4, 1.5, 97))
-LIKELY_WIDTH = 0.4  # a few trials say little about the width: a log-normal prior with a factor of two
+MIDDLE = Condition(0.01, 20.0)
+EASIER = (Condition(0.005, 20.0),)
+HARDER = (Condition(0.02, 20.0), Condition(0.01, 8.0))
+CONDITIONS = (*EASIER, MIDDLE, *HARDER)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One plant: the size that was hidden and whether it was found."""
+    """One plant under one condition.
 
+    Args:
+        number: of the plant.
+        noise, duration: the condition.
+        size: that was hidden.
+        found: whether it was.
+        asked: False where the answer follows from another condition: what is missed is missed under a harder one, and
+            what is found is found under an easier one.
+    """
+
+    number: int
+    noise: float
+    duration: float
     size: float
     found: bool
+    asked: bool = True
 
 
-def next_size(trials: Sequence[Trial]) -> float:
-    """The size to try after these."""
-    if not trials:
+def next_size(middle: Sequence[Trial]) -> float:
+    """The size to try after these trials under the middle condition."""
+    if not middle:
         return START
-    turned = any(one.found != other.found for one, other in pairwise(trials))
+    turned = any(one.found != other.found for one, other in pairwise(middle))
     factor = FACTOR if turned else FIRST_FACTOR
-    last = trials[-1]
+    last = middle[-1]
     return float(np.clip(last.size / factor if last.found else last.size * factor, FLOOR, ROOF))
 
 
-def climb(attempt: Callable[[int, float], Trial | None], count: int) -> list[Trial]:
-    """So many trials; an attempt that finds no such plant gives None and is left out."""
-    trials: list[Trial] = []
-    for number in range(count):
-        trial = attempt(number, next_size(trials))
-        if trial is not None:
-            trials.append(trial)
-    return trials
+def try_plant(found: Callable[[Condition], bool], number: int, size: float, shorter: bool) -> list[Trial]:
+    """Trials of one plant under all conditions; those that follow from the middle one are not run.
 
-
-def limits(trials: Sequence[Trial]) -> dict[str, float | None]:
-    """Sizes found in 50 % and 95 % of the plants; None where the effect was found, or missed, every time.
-
-    The curve is logistic in the logarithm of the size; likelihood times prior is averaged over a grid.
+    Args:
+        found: whether the plant's cause is found under a condition.
+        shorter: whether recordings may be cut short.
     """
-    hits = np.array([t.found for t in trials])
-    if not hits.size or hits.all() or not hits.any():
-        return {"half": None, "most": None}
-    sizes = np.log([t.size for t in trials])
-    slope = (sizes[:, None, None] - PLACES[None, :, None]) / WIDTHS[None, None, :]
-    chance = np.clip(1 / (1 + np.exp(-slope)), 1e-9, 1 - 1e-9)
-    fit = np.sum(np.log(np.where(hits[:, None, None], chance, 1 - chance)), axis=0)
-    fit = fit - 0.5 * (np.log(WIDTHS / LIKELY_WIDTH) / np.log(2.0)) ** 2
-    weight = np.exp(fit - fit.max())
-    weight /= weight.sum()
-    half = float(np.sum(weight * PLACES[:, None]))
-    most = float(np.sum(weight * (PLACES[:, None] + WIDTHS[None, :] * np.log(19.0))))
-    return {"half": float(np.exp(half)), "most": float(np.exp(most))}
+
+    def trial(condition: Condition, answer: bool, asked: bool = True) -> Trial:
+        return Trial(number, condition.noise, condition.duration, size, answer, asked)
+
+    harder = [c for c in HARDER if shorter or c.duration == MIDDLE.duration]
+    if found(MIDDLE):
+        easy = [trial(c, True, asked=False) for c in EASIER]
+        return [trial(MIDDLE, True), *easy, *(trial(c, found(c)) for c in harder)]
+    hard = [trial(c, False, asked=False) for c in harder]
+    return [trial(MIDDLE, False), *(trial(c, found(c)) for c in EASIER), *hard]
+
+
+def is_middle(trial: Trial) -> bool:
+    """Whether a trial was run under the middle condition."""
+    return (trial.noise, trial.duration) == (MIDDLE.noise, MIDDLE.duration)

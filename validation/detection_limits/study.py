@@ -1,7 +1,8 @@
 """How small may an effect be and still be found, against noise and length of recording?
 
-python -m validation.detection_limits.study [--quick] [--trials 6] [--seed 1] [--processes 1] [--out DIR]
-Finished curves are kept in DIR; the same command goes on where it stopped.
+python -m validation.detection_limits.study [--quick] [--plants 6] [--seed 1] [--out out/detection_limits]
+Finished plants are kept in the folder; the same command goes on where it stopped. Plants that another source code of
+lagnet diagnosed are not taken up.
 """
 
 from __future__ import annotations
@@ -9,130 +10,76 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import tempfile
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, replace
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.metadata import version
-from itertools import product
-from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
-
-import lagnet
-from validation.concealed.fair_names import claims_of, match
+from validation.concealed.code import fingerprint
+from validation.detection_limits.curves import limits
 from validation.detection_limits.picture import draw
-from validation.detection_limits.staircase import Trial, climb, limits
-from validation.plants.catalogue.draw_plan import draw_hidden
-from validation.plants.catalogue.listed import LISTED
-from validation.plants.catalogue.plan import Plan
-from validation.plants.catalogue.simulate import simulate
+from validation.detection_limits.plants import ROBOTS, SHAPES, plan_of, set_up
+from validation.detection_limits.staircase import CONDITIONS, MIDDLE, Trial, is_middle, next_size, try_plant
+from validation.plants.catalogue.listed import LISTED, PASSING
 
 HERE = Path(__file__).resolve().parent
-ROBOTS = ("ur5", "panda", "z1")
-SHAPES = ("waypoints", "fourier", "sweeps", "fourier")
-QUICK_KINDS = ("coulomb_friction", "joint_spring", "torque_offset")
+QUICK_KINDS, QUICK_PLANTS = ("coulomb_friction", "joint_spring"), 2
+CODE = fingerprint()  # of the source as it is when the study starts
 
 
-@dataclass(frozen=True)
-class Condition:
-    """Noise over the torque's rms [–], and length of each of three recordings [s]."""
-
-    noise: float
-    duration: float
-
-
-CONDITIONS = (Condition(0.005, 20.0), Condition(0.01, 20.0), Condition(0.02, 20.0), Condition(0.01, 8.0))
-
-
-def plan_of(kind: str, condition: Condition, seed: int, number: int, size: float) -> Plan | None:
-    """A plant that hides one cause of a size; None where none of that size can be built."""
-    rng = np.random.default_rng([seed, number, *kind.encode()])
-    frame = Plan(
-        number=number,
-        seed=int(rng.integers(2**31)),
-        group="detection",
-        robot=ROBOTS[number % len(ROBOTS)],
-        hidden=(),
-        noise=condition.noise,
-        encoder_bits=20,
-        angle_noise=0.0,
-        current_filter=0.0,
-        velocity=False,
-        controller="computed_torque",
-        engine="pinocchio",
-        shapes=SHAPES,
-        speed_share=0.7,
-        duration=condition.duration,
-    )
-    hidden = draw_hidden(frame, kind, rng, size=size, least=0.0)
-    return None if hidden is None else replace(frame, hidden=(hidden,))
+def trials_of(kind: str, seed: int, number: int, size: float, file: Path) -> list[Trial]:
+    """Trials of one plant, kept in a file; none where no such plant can be built."""
+    if not file.exists():
+        began = time.process_time()
+        plan = plan_of(kind, seed, number, size)
+        trials = [] if plan is None else _tried(set_up(plan), number, kind not in PASSING)
+        content = {"trials": [asdict(t) for t in trials], "processor_seconds": time.process_time() - began}
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(content))
+    return [Trial(**t) for t in json.loads(file.read_text())["trials"]]
 
 
-def attempt(kind: str, condition: Condition, seed: int, number: int, size: float) -> Trial | None:
-    """Simulate and diagnose one plant."""
-    plan = plan_of(kind, condition, seed, number, size)
-    if plan is None:
-        return None
-    with tempfile.TemporaryDirectory() as folder:
-        witness, _ = simulate(plan, Path(folder))
-        robot = lagnet.load_robot(plan.robot)
-        runs = [lagnet.load_recording(str(Path(folder) / f"{n}.csv"), robot=robot) for n in plan.recordings]
-        verdict = lagnet.diagnose(runs[:-1], robot=robot, holdout=runs[-1:]).verdict.to_dict()
-    return Trial(plan.hidden[0].size, bool(match(plan, witness, claims_of(verdict))))
+def _tried(bench, number: int, shorter: bool) -> list[Trial]:
+    return try_plant(bench.found, number, bench.plan.hidden[0].size, shorter)
 
 
-def curve(kind: str, condition: Condition, seed: int, count: int) -> dict:
-    """Trials and limits of one effect under one condition."""
-    trials = climb(lambda number, size: attempt(kind, condition, seed, number, size), count)
-    return {"effect": kind, **asdict(condition), "trials": [asdict(t) for t in trials], **limits(trials)}
+def curve(kind: str, seed: int, count: int, folder: Path) -> dict:
+    """All trials of one effect, and its limits by condition."""
+    trials: list[Trial] = []
+    for number in range(count):
+        size = next_size([t for t in trials if is_middle(t)])
+        trials += trials_of(kind, seed, number, size, folder / f"{kind}_{number}.json")
+    conditions = [c for c in CONDITIONS if kind not in PASSING or c.duration == MIDDLE.duration]
+    answers = "".join("x" if t.found else "." for t in trials if is_middle(t))
+    print(kind, answers, flush=True)
+    return {"effect": kind, "limits": limits(trials, conditions), "trials": [asdict(t) for t in trials]}
 
 
-def curves(kinds: tuple[str, ...], conditions: tuple[Condition, ...], given: argparse.Namespace) -> Iterator[dict]:
-    """All curves; those that lie in the folder are read."""
-    tasks = []
-    context = get_context("spawn")
-    with ProcessPoolExecutor(given.processes, mp_context=context) as pool:
-        for condition, kind in product(conditions, kinds):
-            name = f"{kind}_{condition.noise:g}_{condition.duration:g}_{given.seed}_{given.trials}.json"
-            kept = given.out / name
-            task = None if kept.exists() else pool.submit(curve, kind, condition, given.seed, given.trials)
-            tasks.append((kept, task))
-        for kept, task in tasks:
-            if task is not None:
-                kept.write_text(json.dumps(task.result()))
-                print(kept.stem, flush=True)
-            yield json.loads(kept.read_text())
+def content_of(curves: Sequence[dict], seed: int, count: int) -> dict:
+    """What the result file holds."""
+    study = {"command": "python -m validation.detection_limits.study", "seed": seed, "plants_of_an_effect": count}
+    return {
+        "study": study | {"robots": ROBOTS, "shapes": SHAPES},
+        "versions": {"lagnet": version("lagnet"), "pin": version("pin")},
+        "code": CODE,
+        "curves": curves,
+    }
 
 
 def main() -> int:
     """Run; always 0: limits are reported, not judged."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="three effects under one condition, result in out/")
-    parser.add_argument("--trials", type=int, default=6, help="plants for each curve")
+    parser.add_argument("--quick", action="store_true", help="two effects, two plants each, result in out/")
+    parser.add_argument("--plants", type=int, default=6, help="for each effect")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("out") / "detection_limits")
     given = parser.parse_args()
-    given.out.mkdir(parents=True, exist_ok=True)
-    kinds, conditions = tuple(LISTED), CONDITIONS
-    if given.quick:
-        kinds, conditions, given.trials = QUICK_KINDS, CONDITIONS[1:2], 4
-    found = list(curves(kinds, conditions, given))
+    kinds, count = (QUICK_KINDS, QUICK_PLANTS) if given.quick else (tuple(LISTED), given.plants)
+    folder = given.out / CODE[:12] / f"seed_{given.seed}"
+    found = [curve(kind, given.seed, count, folder) for kind in kinds]
     home = given.out if given.quick else HERE
-    content = {
-        "study": {
-            "command": "python -m validation.detection_limits.study",
-            "seed": given.seed,
-            "trials": given.trials,
-            "robots": ROBOTS,
-            "shapes": SHAPES,
-        },
-        "versions": {"lagnet": version("lagnet"), "pin": version("pin")},
-        "curves": found,
-    }
-    (home / "result.json").write_text(json.dumps(content, indent=1) + "\n")
+    (home / "result.json").write_text(json.dumps(content_of(found, given.seed, count), indent=1) + "\n")
     draw(home / "result.json", home / "figure.png")
     return 0
 
