@@ -14,6 +14,8 @@ from lagnet.diagnosis.localisation import locate
 from lagnet.diagnosis.passing_words import changes_in_time, passing_effects, spells_in_fit, told_in_time
 from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.rivals import Contest
+from lagnet.diagnosis.tie_advice import recording_against
+from lagnet.diagnosis.too_vague import TooVague
 from lagnet.diagnosis.verdict import (
     Abstained,
     EffectEvidence,
@@ -162,4 +164,14 @@ def _abstentions(inquiry: Inquiry) -> tuple[Abstained, ...]:
             continue  # no joint is before the first
         joint = None if a.joint is None else inquiry.problem.joints[a.joint]
         out.append(Abstained(a.effect, joint, a.reason, advice(law, joint)))
-    return tuple(out)
+    return (*(_told_as_vague(inquiry, v) for v in inquiry.vague), *out)
+
+
+def _told_as_vague(inquiry: Inquiry, vague: TooVague) -> Abstained:
+    joint = None if vague.joint is None else inquiry.problem.joints[vague.joint]
+    return Abstained(
+        vague.effect,
+        joint,
+        vague.reason,
+        "; ".join(dict.fromkeys(recording_against([vague.effect], [t]) for t in vague.tied)),
+    )

@@ -34,6 +34,7 @@ from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.spells import Spell, set_aside
+from lagnet.diagnosis.too_vague import TooVague, all_without, too_vague
 from lagnet.diagnosis.unjudged import contests_with_unjudged
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
@@ -81,7 +82,8 @@ class Diagnosis:
 class Inquiry:
     """All that the steps of one diagnosis found out, for those who put it into words and pictures.
 
-    `refit` holds what lasts; `passing` what acts for a while only; `spells` the intervals that have no name.
+    `refit` holds what lasts; `passing` what acts for a while only; `spells` the intervals that have no name,
+    `vague` the causes that have too many.
     """
 
     problem: Problem
@@ -98,6 +100,7 @@ class Inquiry:
     seed: int
     passing: tuple[Passing, ...] = ()
     spells: tuple[Spell, ...] = ()
+    vague: tuple[TooVague, ...] = ()
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -181,12 +184,21 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     found, fitted = drop_echoes(problem, bench, *refit_and_prune(problem, bench, found))
     while (modest := withdraw(problem, bench, judge, found, fitted.effects, noise, seed)) is not found:
         found, fitted = refit_and_prune(problem, bench, modest)
+    contests = _contests(problem, bench, found, fitted)
+    vague = too_vague(library, contests)
+    if vague:
+        found, fitted = refit_and_prune(problem, bench, all_without(bench, found, [*vague]))
+        contests = _contests(problem, bench, found, fitted)
     sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
-    contests = contests_with_unjudged(problem, library, found, hold_contests(bench, found))
-    contests = tie_equals(library, contests, fitted.effects)
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
-    return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed)
+    told = tuple(vague.values())
+    return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed, vague=told)
+
+
+def _contests(problem: Problem, bench: Workbench, found: Found, fitted: Refit) -> tuple[Contest, ...]:
+    contests = contests_with_unjudged(problem, bench.library, found, hold_contests(bench, found))
+    return tie_equals(bench.library, contests, fitted.effects)
 
 
 def _divide(
