@@ -89,16 +89,15 @@ def power_of(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
 
 
 def _joint(inquiry: Inquiry, after: Leftover, joint: int) -> JointLeftover:
-    power, limit = power_of(*after.holdout, joint), (ABOVE * inquiry.noise[joint]) ** 2
-    problem = inquiry.problem
-    if power > limit:
-        share = _share(inquiry, problem.holdout, power, joint)
-        return JointLeftover(True, power, share, *_look_at(inquiry, after, joint))
-    fitted = power_of(*after.fit, joint)
-    if fitted > limit:
-        share = _share(inquiry, problem.fit, fitted, joint)
-        return JointLeftover(True, power, share, *_look_at(inquiry, _within_fit(after), joint))
-    return JointLeftover(False, power, 0.0, Ceiling(0.0, ()), None)
+    power, fitted = power_of(*after.holdout, joint), power_of(*after.fit, joint)
+    limit, problem = (ABOVE * inquiry.noise[joint]) ** 2, inquiry.problem
+    if max(power, fitted) <= limit:
+        return JointLeftover(False, power, 0.0, Ceiling(0.0, ()), None)
+    pieces, there = (problem.holdout, power) if power > limit else (problem.fit, fitted)
+    looks = _look_at(inquiry, after, joint) if power > limit else (Ceiling(0.0, ()), None)
+    if not looks[0].depends_on and fitted > limit:  # held-out motion may be too short, or too unlike, to learn it for
+        looks = _look_at(inquiry, _within_fit(after), joint)
+    return JointLeftover(True, power, _share(inquiry, pieces, there, joint), *looks)
 
 
 def _share(inquiry: Inquiry, pieces: Sequence[Piece], power: float, joint: int) -> float:
