@@ -1,0 +1,133 @@
+"""Every rule that the study of ablations takes out is there, comes back, and matters on a plant made for it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from tests.diagnosis.posed import pose
+from validation.ablations.rules import ABLATIONS, ablation_named
+from validation.ablations.taken_out import import_all, taken_out, what_stands_at
+
+from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.diagnosis.fitting import make_workbench
+from lagnet.diagnosis.grams import collect_grams
+from lagnet.diagnosis.settle import settle_on
+
+PLACES = [(a.name, place) for a in ABLATIONS for place in a.instead]
+SLUGGISH = 0.5  # [s] after which a disturbance has forgotten itself
+
+
+@pytest.mark.parametrize(("rule", "place"), PLACES)
+def test_every_place_is_there_and_holds_its_own_again_afterwards(rule: str, place: str) -> None:
+    import_all()
+    before = what_stands_at(place)
+    with taken_out(ablation_named(rule).instead):
+        assert what_stands_at(place) is not before
+    assert what_stands_at(place) is before
+
+
+def test_a_function_is_replaced_wherever_it_was_imported() -> None:
+    import lagnet.diagnosis.adequacy
+    import lagnet.diagnosis.diagnose as flow
+
+    own = flow.withdraw
+    with taken_out(ablation_named("ceiling").instead):
+        assert flow.withdraw is lagnet.diagnosis.adequacy.withdraw is not own
+    assert flow.withdraw is own
+
+
+def test_a_place_that_is_not_there_is_an_error() -> None:
+    with pytest.raises(AttributeError), taken_out({"lagnet.diagnosis.settle:no_such_rule": lambda old: old}):
+        pass
+
+
+@pytest.fixture(scope="module")
+def both(arm) -> Callable[..., tuple[Diagnosis, Diagnosis]]:
+    """The diagnosis of two recordings with and without a rule."""
+
+    def diagnosed(rule: str, fit, held) -> tuple[Diagnosis, Diagnosis]:
+        whole = diagnose([fit], arm, [held])
+        with taken_out(ablation_named(rule).instead):
+            return whole, diagnose([fit], arm, [held])
+
+    return diagnosed
+
+
+def friction(v: np.ndarray) -> np.ndarray:
+    return 0.2 * np.tanh(v / 0.02) + 0.07  # friction and an offset, or friction that differs by direction
+
+
+def sluggish(recording, seed: int, size: float):
+    """The recording with a disturbance that hangs together over time."""
+    keep = math.exp(-0.01 / SLUGGISH)
+    white = np.random.default_rng(seed).standard_normal(recording.tau.shape)
+    slow = np.asarray(lfilter([math.sqrt(1 - keep**2)], [1, -keep], white, axis=0))
+    return replace(recording, tau=recording.tau + size * slow)
+
+
+def test_without_a_noise_floor_noise_is_a_mismatch(both, plant) -> None:
+    whole, without = both("noise floor", plant().record(0), plant().record(1))
+    assert not whole.verdict.found
+    assert without.verdict.found
+
+
+def test_without_the_ceiling_a_law_of_the_wrong_form_keeps_its_name(both, plant, at, names) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.4 * v * (1.0 + np.sin(3.0 * q))))
+    whole, without = both("ceiling", real.record(1), real.record(51))
+    assert names(whole) < names(without)
+
+
+def test_without_rivals_the_first_explanation_stays(both, plant, at, names) -> None:
+    real = plant(at(1, lambda q, v, a, t: friction(v)))
+    whole, without = both("rivals", real.record(0), real.record(1))
+    assert {name for name, _ in names(whole)} == {"coulomb_friction", "torque_offset"}
+    assert {name for name, _ in names(without)} == {"asymmetric_friction"}
+
+
+def test_without_unseen_blocks_the_odds_are_others(both, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.14 * v))
+    whole, without = both("unseen blocks", real.record(0), real.record(1))
+    first, second = (d.effects[0].evidence.log10_odds_over_best_rival for d in (whole, without))
+    assert first != pytest.approx(second, rel=1e-3)
+
+
+def test_without_blocks_of_time_a_sluggish_disturbance_narrows_intervals(both, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.14 * v))
+    fit, held = (sluggish(real.record(s), s + 7, 0.04) for s in (0, 50))
+    whole, without = both("blocks of time", fit, held)
+    wide, narrow = (np.ptp(d.effects[0].parameters[0].ci95) for d in (whole, without))
+    assert narrow < 0.6 * wide
+
+
+def test_without_ties_equal_names_stand_alone(both, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: friction(v)))
+    whole, without = both("ties", real.record(0), real.record(1))
+    assert any(e.tied_with for e in whole.effects)
+    assert without.effects
+    assert not any(e.tied_with for e in without.effects)
+
+
+def test_without_the_joint_refit_a_parameter_stays_on_the_grid(both, plant, at) -> None:
+    def stribeck(v):
+        return (0.14 + 0.14 * np.exp(-((v / 0.15) ** 2))) * np.tanh(v / 0.005)
+
+    real = plant(at(1, lambda q, v, a, t: stribeck(v)))
+    whole, without = both("joint refit", real.record(0), real.record(1))
+    errors = [abs(d.effects[0].value("vs") - 0.15) for d in (whole, without)]
+    assert errors[0] < 0.5 * errors[1]
+
+
+def test_without_the_held_out_gate_what_does_not_help_stays(arm, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.4 * v))
+    posed = pose(arm, real.record(0), plant().record(1))
+    judge = make_workbench(posed.library, collect_grams(posed.problem, posed.library, posed.problem.holdout))
+    found = posed.search()
+    assert found.selection
+    assert settle_on(posed.bench, judge, found, posed.problem.scale).selection == ()
+    with taken_out(ablation_named("held-out gate").instead):
+        assert settle_on(posed.bench, judge, found, posed.problem.scale).selection == found.selection
