@@ -87,6 +87,11 @@ class OrderedNetwork(eqx.Module):
 
         return x @ weights[-1].T + self.biases[-1], along, back
 
+    def settled(self) -> OrderedNetwork:
+        """The same function for use, not for training: unseen weights are zero once and for all, not masked anew."""
+        weights = tuple(self._masked(weight, layer) for layer, weight in enumerate(self.weights))
+        return OrderedNetwork(weights, self.biases, tuple((0,) * len(units) for units in self.degrees), self.activation)
+
     def _masked(self, weight: Array, layer: int) -> Array:
         mask = visible(self.degrees[layer + 1], self.degrees[layer])
         return weight if mask.all() else weight * mask.astype(weight.dtype)
