@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import equinox as eqx
 
+from lagnet.models.dissipation import DissipationNetwork
 from lagnet.models.dynamics import AbstractDynamics, solve_for_acceleration
 from lagnet.models.lagrangian import Matrix, Vector
 from lagnet.models.torque_network import TorqueNetwork
@@ -26,7 +27,7 @@ class Augmented(AbstractDynamics):
     """
 
     mechanics: AbstractDynamics
-    residual: TorqueNetwork
+    residual: TorqueNetwork | DissipationNetwork
     parity: str = eqx.field(static=True)
 
     def epsilon(self, q: Vector, v: Vector, a: Vector) -> Vector:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -19,6 +19,7 @@ from lagnet.models.augmented import PARITIES, Augmented
 from lagnet.models.black_box_lagrangian import BlackBoxSettings, make_black_box
 from lagnet.models.conservative import Conservative, FreeLagrangian
 from lagnet.models.delan import DelanSettings, make_delan
+from lagnet.models.dissipation import DissipationNetwork, DissipationSettings, make_dissipation
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JointFeatures
 from lagnet.models.feed_forward import FeedForward
@@ -26,7 +27,7 @@ from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_percept
 from lagnet.models.scales import Scales
 from lagnet.models.serial_chain.dynamics import make_serial_chain
 from lagnet.models.serial_chain.settings import SerialChainSettings
-from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network, silenced
+from lagnet.models.torque_network import TorqueNetwork, TorqueNetworkSettings, make_torque_network, silenced
 
 
 @dataclass(frozen=True)
@@ -35,19 +36,25 @@ class AugmentedSettings:
 
     Args:
         mechanics: name of the kind under ε; mechanics_settings: its settings, None for its defaults.
-        residual: size of the network behind ε.
+        form: what is behind ε: "perceptron" of (q, v, a), or "dissipation", which takes energy out and is odd in v.
+        residual: settings of that form, None for its defaults.
         parity: "odd" keeps only what changes sign with the velocity, which mechanics can never be; "any" keeps all of
             it, which can also be conservative torque and must be held back by the penalty λ.
     """
 
     mechanics: str = "delan"
     mechanics_settings: Any = None
-    residual: TorqueNetworkSettings = field(default_factory=TorqueNetworkSettings)
+    residual: Any = None
     parity: str = "any"
+    form: str = "perceptron"
 
     def __post_init__(self) -> None:
         if self.parity not in PARITIES:
             raise ModelError(f"parity {self.parity!r} is unknown", choices=PARITIES)
+        if self.form not in RESIDUALS:
+            raise ModelError(f"form {self.form!r} is unknown", choices=RESIDUALS)
+        if self.residual is None:
+            object.__setattr__(self, "residual", RESIDUALS[self.form][0]())
         if self.mechanics_settings is None:
             object.__setattr__(self, "mechanics_settings", settings_class(self.mechanics)())
 
@@ -78,9 +85,14 @@ class ModelSpec:
 def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
     """Mechanics start as they would without ε, so that with an ε that stays silent they also end there."""
     mechanics = _entry(settings.mechanics)[1](key, features, scales, settings.mechanics_settings)
-    epsilon = silenced(make_torque_network(jax.random.fold_in(key, 1), features, scales, settings.residual))
+    epsilon = RESIDUALS[settings.form][1](jax.random.fold_in(key, 1), features, scales, settings.residual)
     return Augmented(mechanics, epsilon, settings.parity)
 
+
+RESIDUALS: dict[str, tuple[type, Callable[..., TorqueNetwork | DissipationNetwork]]] = {
+    "perceptron": (TorqueNetworkSettings, lambda *given: silenced(make_torque_network(*given))),
+    "dissipation": (DissipationSettings, make_dissipation),
+}
 
 KINDS: dict[str, tuple[type, Callable[..., AbstractDynamics]]] = {
     "delan": (DelanSettings, lambda *given: Conservative(make_delan(*given))),
@@ -112,7 +124,10 @@ def settings_from(kind: str, given: Mapping[str, Any]) -> Any:
     Raises:
         ModelError: an unknown setting, or a value that the kind refuses.
     """
-    cls = settings_class(kind)
+    return _made(settings_class(kind), given, kind)
+
+
+def _made(cls: type, given: Mapping[str, Any], kind: str) -> Any:
     names = [f.name for f in dataclasses.fields(cls)]
     for name in given:
         if name not in names:
@@ -134,7 +149,8 @@ def _nested(values: dict[str, Any]) -> dict[str, Any]:
     if isinstance(values.get("mechanics_settings"), Mapping):
         values["mechanics_settings"] = settings_from(below, values["mechanics_settings"])
     if isinstance(values.get("residual"), Mapping):
-        values["residual"] = settings_from("ffnn", values["residual"])
+        cls = RESIDUALS.get(values.get("form", "perceptron"), RESIDUALS["perceptron"])[0]
+        values["residual"] = _made(cls, values["residual"], "residual")
     return values
 
 

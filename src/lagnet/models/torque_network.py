@@ -43,6 +43,12 @@ class TorqueNetwork(eqx.Module):
         inputs = jnp.concatenate([self.features(q), speed, jnp.tanh(speed / SLOW), acceleration])
         return self.network(inputs) * np.asarray(self.scales.torque, inputs.dtype)
 
+    def scaled(self, shares: np.ndarray) -> TorqueNetwork:
+        """The same with the torque of each joint times its share, shape (dof,)."""
+        last = self.network.weights[-1], self.network.biases[-1]
+        smaller = tuple(x * shares.reshape(-1, *[1] * (x.ndim - 1)).astype(x.dtype) for x in last)
+        return eqx.tree_at(lambda x: (x.network.weights[-1], x.network.biases[-1]), self, smaller)
+
 
 def make_torque_network(
     key: Array, features: JointFeatures, scales: Scales, settings: TorqueNetworkSettings
@@ -57,10 +63,3 @@ def make_torque_network(
 def silenced(torque: TorqueNetwork) -> TorqueNetwork:
     """The same network with its last layer at zero, so that as an ε it starts by taking nothing."""
     return eqx.tree_at(lambda x: x.network.weights[-1], torque, replace_fn=jnp.zeros_like)
-
-
-def scaled(torque: TorqueNetwork, shares: np.ndarray) -> TorqueNetwork:
-    """The same network with the torque of each joint times its share, shape (dof,)."""
-    last = torque.network.weights[-1], torque.network.biases[-1]
-    smaller = tuple(x * shares.reshape(-1, *[1] * (x.ndim - 1)).astype(x.dtype) for x in last)
-    return eqx.tree_at(lambda x: (x.network.weights[-1], x.network.biases[-1]), torque, smaller)

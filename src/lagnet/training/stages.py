@@ -18,7 +18,6 @@ from jaxtyping import Array
 from lagnet.models.augmented import Augmented
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.massless import Massless
-from lagnet.models.torque_network import scaled
 from lagnet.training.fit import BorneOut, Fitted, Task, fit
 from lagnet.training.held_out_share import shares
 from lagnet.training.samples import TrainingSamples
@@ -55,7 +54,7 @@ def as_borne_out(fitted: Fitted, task: Task) -> Fitted:
     left = _left(task.held_out, model.mechanics).tau
     epsilon = torque_of(Augmented(Massless(), model.residual, model.parity), q, v, a)
     kept = shares(left, epsilon)
-    smaller = eqx.tree_at(lambda x: x.residual, model, scaled(model.residual, kept))
+    smaller = eqx.tree_at(lambda x: x.residual, model, model.residual.scaled(kept))
     error = np.mean((left - kept * epsilon) ** 2, axis=0) / np.maximum(task.samples.tau.var(axis=0), 1e-18)
     return replace(fitted, dynamics=smaller, borne_out=BorneOut(tuple(kept.tolist()), tuple(error.tolist())))
 

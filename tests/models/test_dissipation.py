@@ -1,0 +1,87 @@
+"""An ε that is the gradient of a dissipation function takes energy out, is odd in v, and survives being saved."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+
+from lagnet.errors import ModelError
+from lagnet.models.augmented import Augmented
+from lagnet.models.delan import DelanSettings
+from lagnet.models.dissipation import DissipationSettings
+from lagnet.models.features import fit_features
+from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw, settings_from
+from lagnet.models.learned_model import LearnedModel
+from lagnet.models.saving import load_model
+from lagnet.models.scales import fit_scales
+
+IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
+AUTODIFF = 1e-5  # central differences at step 1e-6: truncation plus rounding
+SMALL = DelanSettings(rank=3, potential_rank=3)
+TYPES = ("continuous", "prismatic", "revolute")
+
+
+@pytest.fixture(scope="module")
+def motion() -> tuple[np.ndarray, ...]:
+    rng = np.random.default_rng(3)
+    return tuple(rng.normal(size=(40, 3)) for _ in range(3))
+
+
+@pytest.fixture(scope="module")
+def model() -> LearnedModel:
+    q, v, a, tau = np.random.default_rng(0).normal(size=(4, 60, 3))
+    settings = AugmentedSettings(form="dissipation", residual=DissipationSettings(rank=4), mechanics_settings=SMALL)
+    spec = ModelSpec("delan-ffnn", settings, ("a", "b", "c"), fit_features(q, TYPES), fit_scales(v, a, tau))
+    return LearnedModel(spec, draw(spec, jax.random.key(1)))
+
+
+def test_motion_pays_for_it(model, motion):
+    q, v, a = motion
+    power = np.sum(v * model.residual_torque(q, v, a), axis=1)
+    assert power.min() > 0
+
+
+def test_it_is_odd_in_velocity_and_does_not_see_acceleration(model, motion):
+    q, v, a = motion
+    found = model.residual_torque(q, v, a)
+    np.testing.assert_allclose(found, -model.residual_torque(q, -v, 0 * a), atol=IDENTITY)
+    np.testing.assert_allclose(model.residual_torque(q, 0 * v, a), 0.0, atol=IDENTITY)
+
+
+def test_it_is_the_slope_of_the_dissipation(model, motion):
+    q, v, a = motion
+    dynamics, h = model.dynamics, 1e-6
+    assert isinstance(dynamics, Augmented)
+    with jax.enable_x64(True):
+        size: Any = jax.jit(jax.vmap(dynamics.residual.dissipation))
+        steps = [h * np.eye(3)[k] for k in range(3)]
+        slope = np.stack([(size(q, v + s) - size(q, v - s)) / (2 * h) for s in steps], axis=1)
+    np.testing.assert_allclose(model.residual_torque(q, v, a), slope, atol=AUTODIFF, rtol=AUTODIFF)
+
+
+def test_shares_scale_the_torque_of_each_joint(model, motion):
+    dynamics = model.dynamics
+    assert isinstance(dynamics, Augmented)
+    q, v, a = (x[0] for x in motion)
+    shares = np.array([1.0, 0.0, 0.5])
+    with jax.enable_x64(True):
+        found = dynamics.residual.scaled(shares)(q, v, a)
+        np.testing.assert_allclose(found, shares * np.asarray(dynamics.residual(q, v, a)), atol=IDENTITY)
+
+
+def test_a_saved_model_comes_back_the_same(model, motion, tmp_path):
+    again = load_model(model.save(tmp_path / "model"))
+    assert again.spec == model.spec
+    np.testing.assert_array_equal(again.residual_torque(*motion), model.residual_torque(*motion))
+
+
+def test_settings_of_another_form_are_refused():
+    with pytest.raises(ModelError, match="no setting 'hidden'"):
+        settings_from("delan-ffnn", {"form": "dissipation", "residual": {"hidden": [4]}})
+    with pytest.raises(ModelError, match="dissipation"):
+        AugmentedSettings(form="dissipatoin")
+    with pytest.raises(ModelError, match="rank"):
+        DissipationSettings(rank=0)
