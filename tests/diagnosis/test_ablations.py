@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 from tests.diagnosis.posed import pose
+from validation.ablations.remembered import remembered
 from validation.ablations.rules import ABLATIONS, ablation_named
 from validation.ablations.taken_out import import_all, taken_out, what_stands_at
 
@@ -131,3 +132,13 @@ def test_without_the_held_out_gate_what_does_not_help_stays(arm, plant, at) -> N
     assert settle_on(posed.bench, judge, found, posed.problem.scale).selection == ()
     with taken_out(ablation_named("held-out gate").instead):
         assert settle_on(posed.bench, judge, found, posed.problem.scale).selection == found.selection
+
+
+def test_what_is_remembered_changes_no_word(arm, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.4 * v))
+    fit, held = real.record(0), real.record(1)
+    plain = diagnose([fit], arm, [held]).to_json()
+    with remembered():
+        assert [diagnose([fit], arm, [held]).to_json() for _ in range(2)] == [plain, plain]
+        other = diagnose([held], arm, [fit]).to_json()
+    assert other == diagnose([held], arm, [fit]).to_json()

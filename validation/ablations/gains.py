@@ -26,7 +26,6 @@ BESIDE = (
     "named_alone",
     "unlisted_noticed",
     "median_parameter_error",
-    "median_processor_seconds",
     "failures",
 )
 LEAST = 0.02  # of a share, that a rule must buy to earn its place

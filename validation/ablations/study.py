@@ -20,6 +20,7 @@ from lagnet.diagnosis.diagnose import diagnose
 from validation.ablations.figure import draw
 from validation.ablations.gains import Row, rule_rows
 from validation.ablations.kept_plants import KeptPlant, keep
+from validation.ablations.remembered import remembered
 from validation.ablations.rules import ABLATIONS, Ablation
 from validation.ablations.taken_out import taken_out
 from validation.concealed.code import fingerprint
@@ -60,9 +61,10 @@ def conduct(seed: int, numbers: Sequence[int], out: Path) -> dict[str, list[Scor
     scores: dict[str, list[Score]] = {a.name: [] for a in ABLATIONS}
     for number in numbers:
         plant = keep(seed, number, out / "plants")
-        for ablation in ABLATIONS:
-            folder = out / "verdicts" / CODE[:12] / f"seed_{seed}" / ablation.name.replace(" ", "_")
-            scores[ablation.name].append(scored(plant, ablation, folder / f"{plant.plan.name}.json"))
+        with remembered():
+            for ablation in ABLATIONS:
+                folder = out / "verdicts" / CODE[:12] / f"seed_{seed}" / ablation.name.replace(" ", "_")
+                scores[ablation.name].append(scored(plant, ablation, folder / f"{plant.plan.name}.json"))
         said = (f"{name}: {s[-1].right}+{s[-1].wrong}" for name, s in scores.items())
         print(plant.plan.name, plant.plan.group, ", ".join(said), flush=True)
     return scores
