@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lagnet.recordings.conditioning import choose_bandwidth, condition, motion_at_samples
+from lagnet.recordings.bandwidth import choose_bandwidth
+from lagnet.recordings.conditioning import condition, motion_at_samples
+from lagnet.recordings.noise import white_noise
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.smoothing import derivative, even_clock, low_pass, resample
 from lagnet.recordings.stretches import stretches_of
@@ -185,11 +187,24 @@ def test_resampling_is_exact_where_the_times_coincide() -> None:
 def test_the_bandwidth_is_chosen_from_the_motion_and_stated() -> None:
     slow, quick = (record(f * even(np.random.default_rng(0), 4000)) for f in (0.5, 1.0))
     slow, quick = (replace(r, time=even(np.random.default_rng(0), 4000)) for r in (slow, quick))
-    assert 5.0 <= choose_bandwidth([slow]) <= choose_bandwidth([quick]) <= 40.0
-    assert condition([quick]).bandwidth == choose_bandwidth([quick])
+    assert 5.0 <= chosen(slow) <= chosen(quick) <= 40.0
+    assert condition([quick]).bandwidth == chosen(quick)
     assert condition([quick], bandwidth=7.5).bandwidth == 7.5
     coarse = replace(quick.rows(slice(0, None, 10)))  # 20 Hz: no more than a fifth of the rate
-    assert choose_bandwidth([coarse]) <= 0.2 * coarse.rate + 1e-9
+    assert chosen(coarse) <= 0.2 * coarse.rate + 1e-9
+
+
+def chosen(recording) -> float:
+    return choose_bandwidth([recording], {"q": white_noise(recording.q)})
+
+
+@pytest.mark.parametrize("step", [1e-5, 1e-4, 4e-4])
+def test_a_coarse_encoder_does_not_pass_for_quick_motion(step: float) -> None:
+    fine = record(even(np.random.default_rng(0), 6000))
+    coarse = replace(fine, q=np.round(fine.q / step) * step)
+    assert chosen(coarse) <= chosen(fine)
+    truth = condition([fine], chosen(coarse)).stretches[0].a
+    assert np.median(np.std(condition([coarse]).stretches[0].a - truth, axis=0) / np.std(truth, axis=0)) < 0.2
 
 
 def test_motion_comes_back_at_every_sample_as_given() -> None:

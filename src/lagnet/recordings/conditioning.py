@@ -8,14 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from lagnet.recordings.noise import band_noise, motion_bandwidth, white_noise
+from lagnet.recordings.bandwidth import choose_bandwidth
+from lagnet.recordings.noise import band_noise, white_noise
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
 from lagnet.recordings.stretches import stretches_of
 
-OVER_MOTION = 12.0  # bandwidth over that of the motion: friction at reversals is quicker than the motion
-LEAST, MOST = 5.0, 40.0  # [Hz] limits of the bandwidth
-OF_RATE = 0.2  # of the sample rate: the most that a bandwidth may be
 WIDER = 2.0  # motion is filtered this much wider than torque, so that its own filter does not colour the torque
 DISAGREEMENT = 0.05  # recorded velocity further than this from that of the positions is not used
 
@@ -68,21 +66,6 @@ class Conditioned:
     white_tau: np.ndarray
 
 
-def choose_bandwidth(recordings: Sequence[Recording]) -> float:
-    """Bandwidth [Hz] for torques: a multiple of the motion's, within what the sample rate allows."""
-    rates = np.array([r.rate for r in recordings])
-    found = [motion_bandwidth(*_longest_even(r)) for r in recordings if len(r) > SHORTEST]
-    motion = float(np.median(found)) if found else 0.0
-    return float(min(np.clip(OVER_MOTION * motion, LEAST, MOST), OF_RATE * rates.min()))
-
-
-def _longest_even(recording: Recording) -> tuple[np.ndarray, float]:
-    """Positions of the longest stretch on an even clock, and its rate: a jittering clock would look like motion."""
-    rows = max(stretches_of(recording), key=lambda r: r.stop - r.start)
-    time = recording.time[rows]
-    return resample(time, recording.q[rows], even_clock(time, recording.rate)), recording.rate
-
-
 def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -> Conditioned:
     """Puts recordings on an even clock, smooths their motion without phase shift and differentiates it.
 
@@ -90,10 +73,10 @@ def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -
         recordings: one or more of the same joints.
         bandwidth: [Hz], chosen from the data if not given.
     """
-    chosen = choose_bandwidth(recordings) if bandwidth is None else bandwidth
     rate = float(np.median([r.rate for r in recordings]))
-    motion_band = min(WIDER * chosen, 0.4 * rate)
     noise = _noise(recordings, rate)
+    chosen = choose_bandwidth(recordings, noise) if bandwidth is None else bandwidth
+    motion_band = min(WIDER * chosen, 0.4 * rate)
     blend = _velocity_crossover(recordings, noise, rate, motion_band)
     stretches = []
     for index, recording in enumerate(recordings):

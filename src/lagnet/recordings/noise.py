@@ -5,7 +5,10 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
+BINS = 9  # of a spectrum that are averaged before it is held against noise
+ABOVE = 20.0  # times the power of white noise from which a frequency belongs to the motion
 DIFFERENCES = 6  # order: smooth motion well below the sample rate leaves no trace in it
 
 
@@ -43,7 +46,8 @@ def band_noise(sigma: np.ndarray, rate: float, bandwidth: float, derivatives: in
 def motion_bandwidth(q: np.ndarray, rate: float, share: float = 0.99) -> float:
     """Frequency [Hz] below which the given share of the joint speeds' power lies: the median over joints that move.
 
-    Speed, not acceleration, is weighed, because the square of frequency once more would let vibration and quantisation
+    Frequencies at which noise is not far below count for nothing. Speed, not acceleration, is weighed, because the
+    square of frequency once more would let vibration and quantisation
     pass for motion.
 
     Args:
@@ -51,10 +55,12 @@ def motion_bandwidth(q: np.ndarray, rate: float, share: float = 0.99) -> float:
         rate: sample rate [Hz].
     """
     n = q.shape[0]
-    straight = np.linspace(0.0, 1.0, n)[:, None]
-    swept = (q - q[0] - (q[-1] - q[0]) * straight) * np.hanning(n)[:, None]
+    straight, window = np.linspace(0.0, 1.0, n)[:, None], np.hanning(n)[:, None]
+    swept = (q - q[0] - (q[-1] - q[0]) * straight) * window
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
-    power = np.abs(np.fft.rfft(swept, axis=0)) ** 2 * frequency[:, None] ** 2
+    by_noise = white_noise(q) ** 2 * np.sum(window**2)
+    found = np.abs(np.fft.rfft(swept, axis=0)) ** 2
+    power = np.where(uniform_filter1d(found, BINS, axis=0) > ABOVE * by_noise, found, 0.0) * frequency[:, None] ** 2
     moving = np.std(q, axis=0) > 0.1 * np.max(np.std(q, axis=0))
     found = [_share_below(power[:, j], frequency, share) for j in np.flatnonzero(moving)]
     return float(np.median(found)) if found else 0.0
@@ -62,6 +68,7 @@ def motion_bandwidth(q: np.ndarray, rate: float, share: float = 0.99) -> float:
 
 def _share_below(power: np.ndarray, frequency: np.ndarray, share: float) -> float:
     total = np.cumsum(power)
-    if not total[-1] > 0:
+    highest = np.max(total, initial=0.0)
+    if not highest > 0:
         return 0.0
-    return float(frequency[np.searchsorted(total, share * total[-1])])
+    return float(frequency[np.argmax(total >= share * highest)])
