@@ -20,7 +20,11 @@ def test_soft_friction_widens_the_sign_of_its_joint_alone(plant, arm, at) -> Non
     np.testing.assert_array_equal(sharpened.slow[[0, 2]], problem.slow[[0, 2]])
 
 
-@pytest.mark.parametrize("law", [lambda q, v, a, t: 4.0 * v, lambda q, v, a, t: 3.0 * a], ids=["viscous", "rotor"])
+@pytest.mark.parametrize(
+    "law",
+    [lambda q, v, a, t: 4.0 * v, lambda q, v, a, t: 3.0 * a, lambda q, v, a, t: 3.0 * v * np.abs(v)],
+    ids=["viscous", "rotor", "drag"],
+)
 def test_what_is_no_dry_friction_changes_nothing(plant, arm, at, law) -> None:
     real = plant(at(1, law))
     problem = pose(arm, real.record(53), real.record(54)).problem

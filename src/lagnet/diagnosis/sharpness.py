@@ -11,6 +11,7 @@ from lagnet.diagnosis.problem import Problem, spread_evenly
 FACTORS = (0.3, 1.0, 3.0, 9.0, 27.0)  # of the blurred speed
 CLEAR = 0.97  # of the error at the blurred speed itself, below which another sharpness is taken
 MOST_SAMPLES = 60_000  # at full rate: of longer recordings, pieces spread over them
+OF_SPEED = 0.2  # of a joint's usual speed: what changes more slowly with speed is no dry friction
 STRONG = 0.02  # of the residual that dry friction must explain before its sharpness means anything
 
 
@@ -18,7 +19,9 @@ def sharpen(problem: Problem) -> Problem:
     """The problem with the blurred speed of each joint at which its friction fits best."""
     slow = problem.slow.copy()
     for joint in range(problem.n_dof):
-        errors = {f: _error(problem, joint, f * problem.slow[joint]) for f in FACTORS}
+        usual = float(np.sqrt(np.mean(np.concatenate([p.v[p.keep, joint] for p in problem.fit]) ** 2)))
+        factors = [f for f in FACTORS if f <= 1.0 or f * problem.slow[joint] <= OF_SPEED * usual]
+        errors = {f: _error(problem, joint, f * problem.slow[joint]) for f in factors}
         without = _error(problem, joint, None)
         best = min(errors, key=lambda f: errors[f])
         matters = errors[1.0] < (1.0 - STRONG) * without
@@ -28,11 +31,11 @@ def sharpen(problem: Problem) -> Problem:
 
 
 def _error(problem: Problem, joint: int, slow: float | None) -> float:
-    """Squared error of a joint's residual after viscous and dry friction, inertia, offset, spring and gain."""
+    """Squared error of a joint's residual after viscous, quadratic and dry friction, inertia, offset, spring and gain."""
     tables, targets = [], []
     for piece in spread_evenly(problem.fit, MOST_SAMPLES):
         v = piece.v[:, joint]
-        columns = [v, piece.a[:, joint], piece.q[:, joint], piece.load[:, joint], np.ones_like(v)]
+        columns = [v, v * np.abs(v), piece.a[:, joint], piece.q[:, joint], piece.load[:, joint], np.ones_like(v)]
         if slow is not None:
             columns.append(np.tanh(v / slow))
         weight = piece.counts[:, [joint]]
