@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from textwrap import fill
 
 import matplotlib
 
@@ -29,7 +30,7 @@ def draw(result: Path, picture: Path) -> None:
     for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
         _panel(axes, {rule: row["figures"][name] for rule, row in rules.items()})
         axes.set_title(title, fontsize=9)
-    labels = ["whole diagnosis", *(f"without: {rule}" for rule in list(rules)[1:])]
+    labels = ["whole diagnosis", *(f"without: {fill(rule, 40)}" for rule in list(rules)[1:])]
     panels[0].set_yticks(range(len(rules)), labels)
     panels[0].invert_yaxis()
     figure.tight_layout()

@@ -73,7 +73,7 @@ class Row:
     def line(self) -> str:
         """One line of a table."""
         shown = " ".join("     -" if (x := self.figures[k]) is None else f"{x:6.3f}" for k in (*SHARES, *COUNTS))
-        return f"{self.name:15s} {shown}  better {self.plants_better}, worse {self.plants_worse} with it"
+        return f"{self.name:74s} {shown}  better {self.plants_better}, worse {self.plants_worse} with it"
 
 
 def rule_rows(scores: Mapping[str, Sequence[Score]]) -> list[Row]:

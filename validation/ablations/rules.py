@@ -124,7 +124,7 @@ def _last(kinds: tuple[type, ...]) -> Callable[[Any], Callable]:
     return lambda old: lambda *given, **more: tuple(x for x in (*given, *more.values()) if isinstance(x, kinds))
 
 
-ABLATIONS = (
+SINGLE = (
     Ablation("nothing", "the diagnosis as it is", {}),
     Ablation(
         "noise floor",
@@ -189,6 +189,21 @@ ABLATIONS = (
     ),
 )
 """The whole diagnosis first, then one rule taken out at a time."""
+
+
+def _together(*names: str) -> Ablation:
+    """Several rules taken out at once, where each may stand in for another."""
+    single = {a.name: a for a in SINGLE}
+    places = {place: neutral for name in names for place, neutral in single[name].instead.items()}
+    return Ablation(" + ".join(names), "several rules are taken out at once", places)
+
+
+ABLATIONS = (
+    *SINGLE,
+    _together("ceiling", "held-out gate"),
+    _together("noise floor", "ceiling", "held-out gate", "unseen blocks", "blocks of time"),
+)
+"""Those, and rules that may stand in for each other taken out together."""
 
 
 def ablation_named(name: str) -> Ablation:
