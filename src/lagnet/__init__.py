@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from lagnet.recordings.load import load_recording as load_recording
     from lagnet.recordings.recording import Recording as Recording
     from lagnet.rigid_body.robot import Robot as Robot
+    from lagnet.training.ensemble import train_ensemble as train_ensemble
     from lagnet.training.train import train as train
 
 _PUBLIC = {
@@ -59,6 +60,7 @@ _PUBLIC = {
     "load_robot": "lagnet.models.loading:load_any",
     "suggest_motion": "lagnet.diagnosis.suggested_motion:suggest_motion",
     "train": "lagnet.training.train:train",
+    "train_ensemble": "lagnet.training.ensemble:train_ensemble",
     "write_diagnosis": "lagnet.diagnosis.writing:write_diagnosis",
 }
 __all__ = ["__version__", *_PUBLIC]

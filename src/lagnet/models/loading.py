@@ -10,7 +10,7 @@ from lagnet.models import corrected_files
 
 
 def load_any(spec: str | Path) -> Any:
-    """A Robot, a learned model or a corrected model.
+    """A Robot, a learned model, an ensemble of them or a corrected model.
 
     Args:
         spec: URDF or MJCF path, name of example-robot-data, or folder written by `train` or `diagnose`.
@@ -27,6 +27,10 @@ def load_any(spec: str | Path) -> Any:
     for folder in (path, path / "corrected", path / "model"):
         if (folder / corrected_files.FILE).is_file():
             return corrected_files.load_corrected(folder, load_any)
+        if (folder / "ensemble.json").is_file():
+            from lagnet.models.ensemble_files import load_ensemble
+
+            return load_ensemble(folder)
         if (folder / "model.json").is_file():
             from lagnet.models.saving import load_model
 
