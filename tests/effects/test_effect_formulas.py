@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from lagnet.effects.catalogue import CATALOGUE
+from lagnet.effects.catalogue import CATALOGUE, effect_named
 
 ORACLE = 1e-8  # relative: two algorithms in float64
 SPLINE = 1e-4  # relative: a cubic spline between samples of smooth torque, four milliseconds apart
@@ -205,3 +205,11 @@ def test_backlash_shifts_the_link_to_the_flank_that_carries(ur5, sweep, seed: in
 def test_every_effect_has_a_law_written_by_hand() -> None:
     elsewhere = {"backlash", "contact_force"}  # above; and an external wrench, which has a test of its own
     assert set(CATALOGUE) <= set(LAWS) | elsewhere
+
+
+def test_a_lag_within_the_clock_is_no_delay() -> None:
+    law = effect_named("time_delay")
+    assert not law.is_determined({"T": (-0.0006, -0.0004)})
+    assert not law.is_determined({"T": (-0.004, 0.006)})
+    assert law.is_determined({"T": (0.0008, 0.0014)})
+    assert law.is_determined({"T": (-0.009, -0.004)})

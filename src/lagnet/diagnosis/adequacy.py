@@ -6,8 +6,9 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
-from lagnet.diagnosis.evidence_of import held_out_evidence
+from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
+from lagnet.diagnosis.leftover import ABOVE
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
 from lagnet.models.corrected import NamedEffect, torque_with
@@ -15,7 +16,9 @@ from lagnet.models.corrected import NamedEffect, torque_with
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
-MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must explain more than that, predictable or not
+MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must stand out, predictable or not
+STANDS_OUT = 2.0  # times what is left that it must explain there
+WEAK = 0.5  # of what is left beside it that every name must explain: a trace may be the shadow of the unknown
 WORSE = 1.5  # times the nominal error on held-out motion: names that together do that are not the joint's physics
 OUTGROWS = 0.5  # of the power that the nominal model is known to miss: what explains less is not told apart from it
 
@@ -35,7 +38,7 @@ def withdraw(
     physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
     fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it. A joint that
     the names together make worse than the nominal model loses those whose torque there is larger than the mismatch,
-    since they cancel each other on the fitted motion alone.
+    since they cancel each other on the fitted motion alone. Of names weak beside what is left the weakest goes.
 
     Args:
         effects: the selection refitted by the exact laws.
@@ -44,19 +47,33 @@ def withdraw(
     harmed = _harmed(problem, effects, noise)
     shares = _left_shares(problem, problem.holdout, effects, noise)
     fitted = _left_shares(problem, problem.fit, effects, noise)
-    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items() if min(s, fitted.get(j, 0.0)) > MOST}
-    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
-    if not needed and not harmed and problem.missed is None:
+    both = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
+    needed = {j: STANDS_OUT * s for j, s in both.items() if s > MOST}
+    much = {j: s for j, s in shares.items() if s > MUCH}
+    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
+    if not both and not needed and not harmed and problem.missed is None:
         return found
     ignored = _ignored(problem)
     sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
-    for index in found.selection:
+    selected, out = found.selection, found
+    for index in selected:
         h, part = bench.library.hypotheses[index], parts[index]
         good = any(part.shares[j] >= max(needed.get(j, 0.0), ignored[j]) for j in part.at_joints)
         if not good or any((h.effect, h.joint) in names for names in harmed.values()):
-            found = without(bench, found, index)
-    return found
+            out = without(bench, out, index)
+    weak = _weakest(parts, both) if out is found else None
+    return out if weak is None else without(bench, found, weak)
+
+
+def _weakest(parts: dict[int, HeldOut], left: dict[int, float]) -> int | None:
+    """The name that explains least of what is left beside it wherever it helps, if that is less than a part of it."""
+    ratios = {
+        i: max(part.shares[j] / left[j] if left.get(j, 0.0) > 0.0 else np.inf for j in part.at_joints)
+        for i, part in parts.items()
+    }
+    weakest = min(ratios, key=lambda i: ratios[i], default=None)
+    return weakest if weakest is not None and ratios[weakest] < WEAK else None
 
 
 def _ignored(problem: Problem) -> np.ndarray:
@@ -88,7 +105,7 @@ def _added(problem: Problem, effect: NamedEffect) -> np.ndarray:
 def _left_shares(
     problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...], noise: np.ndarray
 ) -> dict[int, float]:
-    """Joints where much mismatch is left above the noise, with its share of the joint's mismatch."""
+    """Joints where mismatch is left above the noise, with its share of the joint's mismatch."""
     if not effects:
         return {}
     nominal, left = _stack(problem, pieces, ()), _stack(problem, pieces, effects)
@@ -96,7 +113,7 @@ def _left_shares(
     for joint in range(problem.n_dof):
         before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
         after = float(np.mean(left[:, joint] ** 2)) - noise[joint] ** 2
-        if before > 0 and after > MUCH * before:
+        if before > 0 and after > (ABOVE**2 - 1.0) * noise[joint] ** 2:
             shares[joint] = after / before
     return shares
 

@@ -9,7 +9,7 @@ import numpy as np
 from lagnet.diagnosis.problem import Problem, spread_evenly
 
 FACTORS = (0.3, 1.0, 3.0, 9.0, 27.0)  # of the blurred speed
-CLEAR = 0.97  # of the error at the blurred speed itself, below which another sharpness is taken
+CLEAR = 0.98  # of the error at the blurred speed itself, below which another sharpness is taken
 MOST_SAMPLES = 60_000  # at full rate: of longer recordings, pieces spread over them
 OF_SPEED = 0.2  # of a joint's usual speed: what changes more slowly with speed is no dry friction
 STRONG = 0.02  # of the residual that dry friction must explain before its sharpness means anything
@@ -31,7 +31,7 @@ def sharpen(problem: Problem) -> Problem:
 
 
 def _error(problem: Problem, joint: int, slow: float | None) -> float:
-    """Squared error of a joint's residual after viscous, quadratic and dry friction, inertia, offset, spring and gain."""
+    """Squared error of a joint's residual after friction of all kinds, inertia, offset, spring and gain."""
     tables, targets = [], []
     for piece in spread_evenly(problem.fit, MOST_SAMPLES):
         v = piece.v[:, joint]

@@ -10,6 +10,8 @@ from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_motion
 from lagnet.effects.motion import Motion
 
+CLOCK = 0.001  # [s] half a control or integration cycle: by so much stamps of torque and position differ by convention
+
 
 @final
 class TimeDelay(Effect):
@@ -34,6 +36,10 @@ class TimeDelay(Effect):
 
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         return bool(abs(coefficients[0]) <= 0.25)
+
+    def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
+        low, high = intervals["T"]
+        return super().is_determined(intervals) and not (-CLOCK < low and high < CLOCK)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         time, load = motion.time, motion.load[:, joint]
