@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 from tests.diagnosis.posed import pose
+from validation.ablations.patience import patience
 from validation.ablations.remembered import remembered
 from validation.ablations.rules import ABLATIONS, ablation_named
 from validation.ablations.taken_out import import_all, taken_out, what_stands_at
@@ -142,3 +143,13 @@ def test_what_is_remembered_changes_no_word(arm, plant, at) -> None:
         assert [diagnose([fit], arm, [held]).to_json() for _ in range(2)] == [plain, plain]
         other = diagnose([held], arm, [fit]).to_json()
     assert other == diagnose([held], arm, [fit]).to_json()
+
+
+def test_what_comes_to_no_end_is_ended() -> None:
+    with pytest.raises(TimeoutError, match="no end"), patience(0.05):
+        while True:
+            math.sqrt(2.0)
+    with patience(0.05):
+        pass
+    for _ in range(2_000_000):  # the limit is gone with its context
+        math.sqrt(2.0)

@@ -20,6 +20,7 @@ from lagnet.diagnosis.diagnose import diagnose
 from validation.ablations.figure import draw
 from validation.ablations.gains import Row, rule_rows
 from validation.ablations.kept_plants import KeptPlant, keep
+from validation.ablations.patience import patience
 from validation.ablations.remembered import remembered
 from validation.ablations.rules import ABLATIONS, SINGLE, Ablation
 from validation.ablations.taken_out import taken_out
@@ -38,7 +39,8 @@ def answer(plant: KeptPlant, ablation: Ablation, file: Path) -> dict:
         began, message, verdict = time.process_time(), "", None
         with taken_out(ablation.instead):
             try:
-                verdict = diagnose(recordings[:-1], robot, recordings[-1:]).verdict.to_dict()
+                with patience():
+                    verdict = diagnose(recordings[:-1], robot, recordings[-1:]).verdict.to_dict()
             except Exception as error:  # what a rule protects from may be a breakdown
                 message = f"{type(error).__name__}: {error}"
         seconds = time.process_time() - began
