@@ -19,7 +19,7 @@ from validation.ideal.motion import MotionSettings
 
 HERE = Path(__file__).parent
 PENALTIES = (1e-6, 1e-4, 1e-2, 1.0, 100.0)
-SAMPLES, SECONDS = 20_000, 5.0
+SAMPLES, SECONDS = 20_000, 12.0
 FACTOR = 5.0  # by which a λ that silences ε must be worse than the best
 LINES = {"torque": "torque error", "inertial": "H a error", "gravity": "g error", "epsilon": "size of ε"}
 
