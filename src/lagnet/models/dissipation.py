@@ -4,7 +4,7 @@ Every body that moves through a medium, or in a simulator with damped links, and
 to R that grows with its speed, so ε = ∂R/∂v opposes the motion and is odd in v: it can be neither H a, nor c, nor g.
 R is carried along the chain as the kinetic energy of `delan` is: x is the speed that velocity gives a body, and
 R = Σ ½ |B x|² + ⅓ |C x|³ over bodies, plus ½ d v² + f |v| over joints: linear and quadratic drag, viscous and dry
-friction (blurred about zero). Source: Rayleigh 1873 (the quadratic form); Batlle & Barjau 2022 for higher powers.
+friction (blurred about zero). The quadratic form is Rayleigh's (1873).
 """
 
 from __future__ import annotations
