@@ -6,9 +6,9 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
-from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
+from lagnet.diagnosis.evidence_of import held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.leftover import ABOVE
+from lagnet.diagnosis.leftover import every_second_part
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
 from lagnet.models.corrected import NamedEffect, torque_with
@@ -16,9 +16,7 @@ from lagnet.models.corrected import NamedEffect, torque_with
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
-MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must stand out, predictable or not
-STANDS_OUT = 2.0  # times what is left that it must explain there
-WEAK = 0.5  # of what is left beside it that every name must explain: a trace may be the shadow of the unknown
+MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must explain more, predictable or not
 WORSE = 1.5  # times the nominal error on held-out motion: names that together do that are not the joint's physics
 OUTGROWS = 0.5  # of the power that the nominal model is known to miss: what explains less is not told apart from it
 
@@ -38,7 +36,7 @@ def withdraw(
     physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
     fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it. A joint that
     the names together make worse than the nominal model loses those whose torque there is larger than the mismatch,
-    since they cancel each other on the fitted motion alone. Of names weak beside what is left the weakest goes.
+    since they cancel each other on the fitted motion alone.
 
     Args:
         effects: the selection refitted by the exact laws.
@@ -47,33 +45,20 @@ def withdraw(
     harmed = _harmed(problem, effects, noise)
     shares = _left_shares(problem, problem.holdout, effects, noise)
     fitted = _left_shares(problem, problem.fit, effects, noise)
-    both = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
-    needed = {j: STANDS_OUT * s for j, s in both.items() if s > MOST}
-    much = {j: s for j, s in shares.items() if s > MUCH}
-    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
-    if not both and not needed and not harmed and problem.missed is None:
+    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items() if min(s, fitted.get(j, 0.0)) > MOST}
+    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
+    if not needed and not harmed and problem.missed is None:
         return found
     ignored = _ignored(problem)
     sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
-    selected, out = found.selection, found
-    for index in selected:
+    out = found
+    for index in found.selection:
         h, part = bench.library.hypotheses[index], parts[index]
         good = any(part.shares[j] >= max(needed.get(j, 0.0), ignored[j]) for j in part.at_joints)
         if not good or any((h.effect, h.joint) in names for names in harmed.values()):
             out = without(bench, out, index)
-    weak = _weakest(parts, both) if out is found else None
-    return out if weak is None else without(bench, found, weak)
-
-
-def _weakest(parts: dict[int, HeldOut], left: dict[int, float]) -> int | None:
-    """The name that explains least of what is left beside it wherever it helps, if that is less than a part of it."""
-    ratios = {
-        i: max(part.shares[j] / left[j] if left.get(j, 0.0) > 0.0 else np.inf for j in part.at_joints)
-        for i, part in parts.items()
-    }
-    weakest = min(ratios, key=lambda i: ratios[i], default=None)
-    return weakest if weakest is not None and ratios[weakest] < WEAK else None
+    return out
 
 
 def _ignored(problem: Problem) -> np.ndarray:
@@ -113,7 +98,7 @@ def _left_shares(
     for joint in range(problem.n_dof):
         before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
         after = float(np.mean(left[:, joint] ** 2)) - noise[joint] ** 2
-        if before > 0 and after > (ABOVE**2 - 1.0) * noise[joint] ** 2:
+        if before > 0 and after > MUCH * before:
             shares[joint] = after / before
     return shares
 
@@ -121,17 +106,22 @@ def _left_shares(
 def _predictable(
     problem: Problem, effects: tuple[NamedEffect, ...], shares: dict[int, float], seed: int
 ) -> dict[int, float]:
-    """Those of the joints where what is left depends on the state of the arm."""
+    """Those of the joints where what is left depends on the state of the arm, there or in parts of the fit."""
     if not shares:
         return {}
     left = {name: _stack(problem, getattr(problem, name), effects) for name in ("fit", "holdout")}
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     counts = np.concatenate([p.counts for p in problem.fit])
-    return {
-        j: s
-        for j, s in shares.items()
-        if find_ceiling(seen, left["fit"][:, j], counts[:, j], fresh, left["holdout"][:, j], seed).share > SMOOTH
-    }
+    one, other = every_second_part(len(counts))
+
+    def depends(j: int) -> bool:
+        rest, test = left["fit"][:, j], left["holdout"][:, j]
+        if find_ceiling(seen, rest, counts[:, j], fresh, test, seed).share > SMOOTH:
+            return True
+        halves = seen.only(one), rest[one], counts[one, j], seen.only(other), rest[other]
+        return find_ceiling(*halves, seed).share > SMOOTH
+
+    return {j: s for j, s in shares.items() if depends(j)}
 
 
 def _stack(problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...]) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from sklearn.ensemble import HistGradientBoostingRegressor
 from threadpoolctl import threadpool_limits
 
+from lagnet.diagnosis.plain_terms import plain_share
 from lagnet.diagnosis.problem import Piece, Problem
 
 MOST = 4_000  # samples that are learned from
@@ -69,7 +70,7 @@ def _time(pieces: tuple[Piece, ...]) -> np.ndarray:
 def find_ceiling(
     signals: Signals, residual: np.ndarray, counts: np.ndarray, unseen: Signals, unseen_residual: np.ndarray, seed: int
 ) -> Ceiling:
-    """Boosted trees on the fit samples, judged on the held-out ones.
+    """Boosted trees or a few plain terms, whichever does better, on the fit samples, judged on the held-out ones.
 
     Args:
         residual, unseen_residual: shape (n,), (m,), one joint [N m].
@@ -89,7 +90,8 @@ def find_ceiling(
         error = _error(trees, unseen.table, unseen_residual)
         share = float(np.clip(1.0 - error / power, 0.0, 1.0))
         named = _strongest(trees, unseen, unseen_residual, error, power, rng) if share > LEAST_EFFECT else ()
-    return Ceiling(share, named)
+    plain, terms = plain_share(signals.names, signals.table[rows], residual[rows], unseen.table, unseen_residual)
+    return Ceiling(plain, terms[:STRONGEST]) if plain > max(share, LEAST_EFFECT) else Ceiling(share, named)
 
 
 def _error(trees: HistGradientBoostingRegressor, table: np.ndarray, truth: np.ndarray) -> float:

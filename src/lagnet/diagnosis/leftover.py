@@ -108,10 +108,15 @@ def _share(inquiry: Inquiry, pieces: Sequence[Piece], power: float, joint: int) 
 def _within_fit(after: Leftover) -> Leftover:
     """The fitted motion alone: every second part of it is predicted from the others."""
     rest, counts = after.fit
-    parts = np.array_split(np.arange(len(rest)), 2 * HALVES)
-    seen, unseen = np.concatenate(parts[0::2]), np.concatenate(parts[1::2])
+    seen, unseen = every_second_part(len(rest))
     halves = [(rest[rows], counts[rows]) for rows in (seen, unseen)]
     return Leftover(halves[0], halves[1], after.seen.only(seen), after.seen.only(unseen))
+
+
+def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of every second of a few parts of n samples in order, and all other rows."""
+    parts = np.array_split(np.arange(n), 2 * HALVES)
+    return np.concatenate(parts[0::2]), np.concatenate(parts[1::2])
 
 
 def _look_at(inquiry: Inquiry, after: Leftover, joint: int) -> tuple[Ceiling, LeftoverShape | None]:
