@@ -33,6 +33,19 @@ FULL_COVERAGE = 0.95
 
 
 @dataclass(frozen=True)
+class Told:
+    """What a verdict without a rule is worth.
+
+    Args:
+        score: of its claims.
+        mismatch: whether it says that recordings and model differ at all.
+    """
+
+    score: Score
+    mismatch: bool
+
+
+@dataclass(frozen=True)
 class Row:
     """One ablation.
 
@@ -76,15 +89,18 @@ class Row:
         return f"{self.name:74s} {shown}  better {self.plants_better}, worse {self.plants_worse} with it"
 
 
-def rule_rows(scores: Mapping[str, Sequence[Score]]) -> list[Row]:
+def rule_rows(told: Mapping[str, Sequence[Told]]) -> list[Row]:
     """The whole diagnosis first, then each ablation against it."""
-    whole = next(iter(scores.values()))
-    return [_row(name, one, whole) for name, one in scores.items()]
+    whole = next(iter(told.values()))
+    return [_row(name, one, whole) for name, one in told.items()]
 
 
-def _row(name: str, without: Sequence[Score], whole: Sequence[Score]) -> Row:
+def _row(name: str, told: Sequence[Told], told_by_all: Sequence[Told]) -> Row:
+    without, whole = ([t.score for t in each] for each in (told, told_by_all))
     found, full = figures(without), figures(whole)
-    kept = {k: found[k] for k in (*SHARES, *COUNTS, *BESIDE)}
+    empty = [t.mismatch for t in told if t.score.group == "empty"]
+    alarms = {"mismatch_told_where_nothing_is_hidden": sum(empty), "plants_with_nothing_hidden": len(empty)}
+    kept = {k: found[k] for k in (*SHARES, *COUNTS, *BESIDE)} | alarms
     pairs = list(zip(whole, without, strict=True))
     values = [(_value(a), _value(b)) for a, b in pairs]
     return Row(

@@ -18,14 +18,14 @@ from pathlib import Path
 
 from lagnet.diagnosis.diagnose import diagnose
 from validation.ablations.figure import draw
-from validation.ablations.gains import Row, rule_rows
+from validation.ablations.gains import Row, Told, rule_rows
 from validation.ablations.kept_plants import KeptPlant, keep
 from validation.ablations.patience import patience
 from validation.ablations.remembered import remembered
 from validation.ablations.rules import ABLATIONS, SINGLE, Ablation
 from validation.ablations.taken_out import taken_out
 from validation.concealed.code import fingerprint
-from validation.concealed.scoring import Score, score
+from validation.concealed.scoring import score
 
 HERE = Path(__file__).resolve().parent
 FULL, QUICK = 48, (0, 2)
@@ -49,25 +49,26 @@ def answer(plant: KeptPlant, ablation: Ablation, file: Path) -> dict:
     return json.loads(file.read_text())
 
 
-def scored(plant: KeptPlant, ablation: Ablation, file: Path) -> Score:
+def scored(plant: KeptPlant, ablation: Ablation, file: Path) -> Told:
     """One plant's verdict without a rule, against the truth; gains of corrected models are not asked for."""
     kept = answer(plant, ablation, file)
     spent = kept["processor_seconds"]
     outcome = {"seconds": spent, "processor_seconds": spent, "message": kept["message"], "code": CODE}
     outcome |= {"gain_share": None, "gain_share_with_rest": None}
-    return score(plant.plan, plant.witness, kept["verdict"], outcome)
+    mismatch = kept["verdict"] is not None and kept["verdict"]["mismatch"]["found"]
+    return Told(score(plant.plan, plant.witness, kept["verdict"], outcome), mismatch)
 
 
-def conduct(seed: int, numbers: Sequence[int], out: Path) -> dict[str, list[Score]]:
+def conduct(seed: int, numbers: Sequence[int], out: Path) -> dict[str, list[Told]]:
     """Scores of all plants under every ablation; plant by plant, so that a stopped run compares like with like."""
-    scores: dict[str, list[Score]] = {a.name: [] for a in ABLATIONS}
+    scores: dict[str, list[Told]] = {a.name: [] for a in ABLATIONS}
     for number in numbers:
         plant = keep(seed, number, out / "plants")
         with remembered():
             for ablation in ABLATIONS:
                 folder = out / "verdicts" / CODE[:12] / f"seed_{seed}" / ablation.name.replace(" ", "_")
                 scores[ablation.name].append(scored(plant, ablation, folder / f"{plant.plan.name}.json"))
-        said = (f"{name}: {s[-1].right}+{s[-1].wrong}" for name, s in scores.items())
+        said = (f"{name}: {s[-1].score.right}+{s[-1].score.wrong}" for name, s in scores.items())
         print(plant.plan.name, plant.plan.group, ", ".join(said), flush=True)
     return scores
 
@@ -78,7 +79,7 @@ def report(rows: Sequence[Row], study: dict, home: Path) -> bool:
         "study": study,
         "versions": {"lagnet": version("lagnet"), "pin": version("pin"), "python": platform.python_version()},
         "code": CODE,
-        "rules": {row.name: row.told() for row in rows},
+        "rules": {row.name.replace(" ", "_"): row.told() for row in rows},
         "pass_line_kept": all(row.earns for row in rows[1 : len(SINGLE)]),
     }
     (home / "result.json").write_text(json.dumps(content, indent=1) + "\n")
