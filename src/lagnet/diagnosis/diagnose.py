@@ -22,6 +22,7 @@ from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.grams import collect_grams
 from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over, missed_by
 from lagnet.diagnosis.library import Library, build_library
+from lagnet.diagnosis.narrower import best_band
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
 from lagnet.diagnosis.passing import Passing, settle_passing
@@ -143,7 +144,8 @@ def diagnose(
         recordings: of the real arm (or of the better simulation), joints as the robot's.
         robot: the nominal model: a Robot, a learned model, or the corrected model of an earlier diagnosis.
         holdout: recordings that are not fitted; None: the last fifth of each recording.
-        bandwidth: of the zero-phase low-pass on torques [Hz]; None: chosen from the data.
+        bandwidth: of the zero-phase low-pass on torques [Hz]; None: chosen from the data, and narrower where that
+            explains much more.
         nominal_error: shape (dof,), torque that the nominal model is known to miss, such as a learned one [N m]; it
             counts into the noise floor. None: what an earlier diagnosis left, if the model comes from one.
         seed: of everything random.
@@ -153,19 +155,22 @@ def diagnose(
     """
     fit_on, held = _divide(recordings, robot, holdout)
     ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
-    fit = condition(fit_on, bandwidth)
-    unseen = condition(held, fit.bandwidth)
-    problem = sharpen(pose_problem(robot, fit, unseen, ends_of))
-    noise = noise_floor(problem, fit, seed)
     known = nominal_error if nominal_error is not None else getattr(robot, "left", None)
-    if known is not None:
-        problem, noise = replace(problem, missed=np.asarray(known, dtype=float)), np.hypot(noise, known)
-    inquiry = inquire(problem, fit, unseen, noise, seed)
-    inquiry = settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
+
+    def at(band: float | None) -> Inquiry:
+        fit = condition(fit_on, band)
+        unseen = condition(held, fit.bandwidth)
+        problem = replace(sharpen(pose_problem(robot, fit, unseen, ends_of)), missed=known)
+        noise = noise_floor(problem, fit, seed)
+        noise = noise if known is None else np.hypot(noise, known)
+        inquiry = inquire(problem, fit, unseen, noise, seed)
+        return settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
+
+    inquiry = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     seen = inquiry.problem
     corrected = CorrectedModel(robot, inquiry.effects, seen.slow, seen.held, left=missed_by(inquiry))
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
-    return Diagnosis(verdict, corrected, evidence, fit_on, held, unseen, ends_of, inquiry.standing)
+    return Diagnosis(verdict, corrected, evidence, fit_on, held, inquiry.holdout, ends_of, inquiry.standing)
 
 
 def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.ndarray, seed: int) -> Inquiry:
