@@ -28,7 +28,7 @@ def draw(result: Path, picture: Path) -> None:
         at = np.arange(len(kinds)) + (i - 0.5) * WIDTH
         left.bar(at, found / np.maximum(asked, 1), WIDTH, label=label)
         for x, f, n in zip(at, found, asked, strict=True):
-            left.text(x, 0.02, f"{f}/{n}", ha="center", color="white", fontsize=8)
+            left.text(x, 0.02, f"{f}/{n}", ha="center", color="white" if f else "black", fontsize=8)
         shares = [content["figures"][route][k] or 0.0 for k in ("precision", "recall", "right_joint")]
         right.bar(np.arange(3) + (i - 0.5) * WIDTH, shares, WIDTH, label=label)
         for x, share in zip(np.arange(3) + (i - 0.5) * WIDTH, shares, strict=True):
