@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lagnet._version import __version__
+from lagnet.diagnosis.hum import told_of_hum
 from lagnet.diagnosis.leftover import ABOVE, power_of, stacked
 from lagnet.diagnosis.localisation import locate
 from lagnet.diagnosis.passing_words import changes_in_time, passing_effects, spells_in_fit, told_in_time
@@ -58,8 +59,13 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
         unexplained=tuple(_unexplained(inquiry, j) for j in range(problem.n_dof)),
         fit=tuple(_fit(inquiry, j) for j in range(problem.n_dof)),
         abstentions=_abstentions(inquiry),
-        warnings=(*dict.fromkeys(w for r in (*fit, *held) for w in r.warnings), *told_in_time(inquiry, fit, held)),
+        warnings=_warnings(inquiry, fit, held),
     )
+
+
+def _warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    of_files = dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)
+    return (*of_files, *told_in_time(inquiry, fit, held), *told_of_hum(inquiry.fit, inquiry.problem.joints))
 
 
 def is_prismatic(problem: Problem, joint: int | None) -> bool:
