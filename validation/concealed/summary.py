@@ -34,7 +34,7 @@ def figures(scores: Sequence[Score]) -> dict:
     gains = [s.gain_share for s in scores if s.gain_share is not None]
     return {
         "plants": len(scores),
-        "robots": sorted({s.robot for s in scores}),
+        "robots": sorted({s.robot for s in scores if s.robot}),
         "hidden_effects": sum(len(s.answers) for s in scores),
         "hidden_effects_not_shown": sum(not a.shown for s in scores for a in s.answers),
         "asked": len(asked),
