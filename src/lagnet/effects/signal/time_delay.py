@@ -39,7 +39,7 @@ class TimeDelay(Effect):
 
     def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
         low, high = intervals["T"]
-        return super().is_determined(intervals) and not (-CLOCK < low and high < CLOCK)
+        return super().is_determined(intervals) and not (low > -CLOCK and high < CLOCK)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         time, load = motion.time, motion.load[:, joint]
