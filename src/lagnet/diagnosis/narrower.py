@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lagnet.diagnosis.spells import Spell, set_aside
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected import torque_with
 
@@ -30,7 +31,8 @@ def best_band(first: Inquiry, at: Callable[[float], Inquiry]) -> Inquiry:
     if not is_puzzled(first):
         return first
     tried = [first, *_narrower(first.fit.bandwidth, at)]
-    errors = [_error(one, tried[-1]) for one in tried]
+    spells = [s for one in tried for s in one.spells]
+    errors = [_error(one, tried[-1], spells) for one in tried]
     best = int(np.argmin(errors))
     return tried[best] if errors[best] < errors[0] - BETTER else first
 
@@ -54,9 +56,13 @@ def _narrower(bandwidth: float, at: Callable[[float], Inquiry]) -> list[Inquiry]
     return out
 
 
-def _error(inquiry: Inquiry, judge: Inquiry) -> float:
-    """Logarithm of the held-out errors of all joints in the band of another inquiry, noise being the least."""
-    problem = replace(judge.problem, slow=inquiry.problem.slow, held=inquiry.problem.held)
+def _error(inquiry: Inquiry, judge: Inquiry, spells: Sequence[Spell]) -> float:
+    """Logarithm of the held-out errors of all joints in the band of another inquiry, noise being the least.
+
+    Intervals in which something acts that no inquiry has a name for count for none.
+    """
+    clean = set_aside(judge.problem, spells)
+    problem = replace(clean, slow=inquiry.problem.slow, held=inquiry.problem.held)
     rest, counts = [], []
     for piece in problem.holdout:
         motion = replace(piece.motion(problem), recorded=None)
