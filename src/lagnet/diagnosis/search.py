@@ -14,7 +14,7 @@ PRICE_PER_COLUMN = 1.0  # nats more for each coefficient, beyond what unseen blo
 LEAST_SHARE = 0.06  # of the error still there: an effect that takes less off is not claimed
 LEAST_TORQUE = 0.0075  # of the joint's torque: effects smaller than this, a quarter of three per cent, are not claimed
 LEAST_OF_ALL = 0.0009  # of the nominal error: three per cent of its root mean square
-REFINED = 0.002  # of the nominal error: what a wider law must gain over its special case, whose form is never exact
+REFINED = 0.002  # of what a law explains: what it must gain over its special case, whose form is never exact
 ROUNDS = 40
 
 
@@ -148,7 +148,8 @@ def simplify(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
                 continue
             other = tuple(simple[0] if k == i else k for k in selection)
             before, after = view.loss(selection)[0], view.loss(other)[0]
-            least = max(LEAST_SHARE * after, REFINED * float(view.total[-1, -1]))
+            explained = view.loss([k for k in selection if k != i])[0] - before
+            least = max(LEAST_SHARE * after, REFINED * explained)
             if (after - before < least or _at_edge(view, i)) and np.isfinite(view.score(other)):
                 return simplify(view, other)
     return selection
