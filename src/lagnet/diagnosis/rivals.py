@@ -60,7 +60,27 @@ def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest
                 odds[name] = gap
             if gap < TIE or same:
                 tied.add(name)
+    tied.update(_preferred_yet_refused(view, own, index, here))
     return Contest(index, _ranked(odds), tuple(sorted(tied)))
+
+
+def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int, here: float) -> set[str]:
+    """The wider law that the evidence prefers, if any.
+
+    The search refused it because what it gains could be no more than the special case's own form, never exact: a
+    Stribeck speed close to the zone that noise blurs, for instance. Then both stay open.
+    """
+    hypotheses = view.bench.library.hypotheses
+    rest = tuple(k for k in own if k != index)
+    wider = [
+        k
+        for k in view.bench.library.local[view.joint]
+        if hypotheses[index].effect in hypotheses[k].law.contains and compatible(view, rest, k)
+    ]
+    scores = {k: view.score((*rest, k)) for k in wider}
+    best = max(scores, key=lambda k: scores[k], default=None)
+    preferred = best is not None and (scores[best] - here) / np.log(10.0) > TIE
+    return {hypotheses[best].effect} if best is not None and preferred else set()
 
 
 def replacements(
