@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found, total_score, views_of
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.search import JointView, compatible
+from lagnet.diagnosis.search import JointView, compatible, gains_over
 
 TIE = 1.3  # log10 odds below which two explanations are tied: twenty to one
 SAME = 1e-3  # relative difference of errors below which two explanations are the same, whatever the odds
@@ -60,27 +60,24 @@ def _local_contest(view: JointView, own: tuple[int, ...], index: int) -> Contest
                 odds[name] = gap
             if gap < TIE or same:
                 tied.add(name)
-    tied.update(_preferred_yet_refused(view, own, index, here))
+    tied.update(_preferred_yet_refused(view, own, index))
     return Contest(index, _ranked(odds), tuple(sorted(tied)))
 
 
-def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int, here: float) -> set[str]:
-    """The wider law that the evidence prefers, if any.
+def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
+    """The wider law that the evidence prefers and that gains enough, if any.
 
-    The search refused it because what it gains could be no more than the special case's own form, never exact: a
-    Stribeck speed close to the zone that noise blurs, for instance. Then both stay open.
+    The search refused it at the least shape that was tried: a Stribeck speed this close to the zone that noise blurs
+    could be the blur itself. Then both stay open.
     """
     hypotheses = view.bench.library.hypotheses
     rest = tuple(k for k in own if k != index)
-    wider = [
-        k
-        for k in view.bench.library.local[view.joint]
-        if hypotheses[index].effect in hypotheses[k].law.contains and compatible(view, rest, k)
-    ]
-    scores = {k: view.score((*rest, k)) for k in wider}
+    wider = [k for k in view.bench.library.local[view.joint] if hypotheses[index].effect in hypotheses[k].law.contains]
+    scores = {k: view.score((*rest, k)) for k in wider if compatible(view, rest, k)}
     best = max(scores, key=lambda k: scores[k], default=None)
-    preferred = best is not None and (scores[best] - here) / np.log(10.0) > TIE
-    return {hypotheses[best].effect} if best is not None and preferred else set()
+    if best is None or (scores[best] - view.score(own)) / np.log(10.0) < TIE:
+        return set()
+    return {hypotheses[best].effect} if gains_over(view, (*rest, best), best, own) else set()
 
 
 def replacements(
