@@ -66,3 +66,13 @@ def test_friction_that_drives_has_no_evidence(plant, arm, at) -> None:
     real = plant(at(1, lambda q, v, a, t: -2.0 * v))
     view = views_of(*(lambda p: (p.bench, p.search()))(pose(arm, real.record(43), real.record(44))))[1]
     assert view.score((number(view, "viscous_friction"),)) == -np.inf
+
+
+def test_a_small_stribeck_curve_behind_a_large_spring_is_no_coulomb_friction(plant, arm, at) -> None:
+    def torque(q, v, a, t):
+        return 60.0 * q + (1.0 + 1.0 * np.exp(-((v / 0.25) ** 2))) * np.tanh(v / SHARP)
+
+    real = plant(at(1, torque))
+    posed = pose(arm, real.record(43), real.record(44))
+    chosen = {posed.library.hypotheses[i].place for i in posed.search().selection}
+    assert chosen == {("joint_spring", 1), ("stribeck_friction", 1)}
