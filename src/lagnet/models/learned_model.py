@@ -20,6 +20,7 @@ from lagnet.models.conservative import Conservative, FreeLagrangian
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.kinds import ModelSpec
 from lagnet.models.networks import OrderedNetwork
+from lagnet.models.one_sample import torque_of_one
 from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.types import MassMatrix, Samples, Trajectory
 
@@ -59,7 +60,7 @@ class LearnedModel:
         self.model_kind, self.precision = spec.kind, precision
         with jax.enable_x64(True):
             self.dynamics: AbstractDynamics = jax.tree.map(_wide, dynamics)
-        self._compiled: dict[tuple[str, bool], Callable[..., Any]] = {}
+        self._functions: dict[tuple[str, bool], Callable[..., np.ndarray]] = {}
 
     def __repr__(self) -> str:
         return f"LearnedModel({self.model_kind}, {self.n_dof} joints: {', '.join(self.joints)})"
@@ -131,44 +132,33 @@ class LearnedModel:
             raise ModelError(f"a model of kind {self.model_kind} has no energies", choices=("delan", "delan-ffnn"))
         return dynamics
 
-    def _function(self, name: str, alone: bool) -> Callable[..., Any]:
-        """The compiled version of one call, for batches or for a sample alone.
-
-        Weights are given to it as a list, since walking through the model at every call would take longer than one
-        sample. Into the call for a sample alone they are built, which saves handing them over; but not where some are
-        all zero, such as those of an ε that stays silent: XLA folds a product of 4096 rows with such weights away and
-        adds memory that it never wrote (jax 0.10.2 on CPU).
-        """
+    def _function(self, name: str, alone: bool) -> Callable[..., np.ndarray]:
+        """One call, for batches or for a sample alone: compiled, or in NumPy where that is sooner done."""
+        width = PRECISIONS[self.precision]
         owner: Any = self._mechanics().lagrangian if name.endswith("_energy") else self.dynamics
-        weights, rest = eqx.partition(_settled(owner, PRECISIONS[self.precision]), eqx.is_array)
-        leaves, tree = jax.tree.flatten(weights)
+        with self._width():
+            owner = _settled(owner, width)
+            by_hand = torque_of_one(owner, width) if alone and name == "inverse_dynamics" else None
+            if by_hand is not None:
+                return by_hand
+            compiled = _compiled(owner, name, alone)
 
-        def call(leaves: list[Any], *given: Any) -> Any:
-            return jax.vmap(getattr(eqx.combine(tree.unflatten(leaves), rest), name))(*given)
+        def call(*given: np.ndarray) -> np.ndarray:
+            with self._width():
+                return np.array(compiled(*given), np.float64)
 
-        if alone and all(np.any(x) for x in leaves if x.ndim > 1):
-            return jax.jit(partial(call, leaves))
-        return partial(jax.jit(call), leaves)
+        return call
 
     def _batched(self, name: str, **arrays: Any) -> np.ndarray:
         given = self._checked(arrays)
         n = len(given[0])
-        with self._width():
-            key = (name, n == 1)
-            function = self._compiled.get(key) or self._compiled.setdefault(key, self._function(*key))
-            if n in BUCKETS:
-                return np.array(function(*given), np.float64)
+        key = (name, n == 1)
+        function = self._functions.get(key) or self._functions.setdefault(key, self._function(*key))
+        if n in BUCKETS:
+            return function(*given)
         starts = range(0, n, CHUNK)
         parts = [[x[i : i + CHUNK] for x in given] for i in starts]
-        return np.concatenate([*(map if n <= CHUNK else _workers().map)(partial(self._padded, function), parts)])
-
-    def _padded(self, function: Callable[..., Any], arrays: list[np.ndarray]) -> np.ndarray:
-        n = len(arrays[0])
-        size = next(bucket for bucket in BUCKETS if bucket >= n)
-        if size > n:
-            arrays = [np.pad(x, ((0, size - n), (0, 0)), mode="edge") for x in arrays]
-        with self._width():
-            return np.asarray(function(*arrays), np.float64)[:n]
+        return np.concatenate([*(map if n <= CHUNK else _workers().map)(partial(_padded, function), parts)])
 
     def _width(self) -> Any:
         """Whether JAX computes in float64; a setting of the thread."""
@@ -188,6 +178,33 @@ class LearnedModel:
 @cache
 def _workers() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(THREADS, thread_name_prefix="lagnet-model")
+
+
+def _compiled(owner: Any, name: str, alone: bool) -> Callable[..., Any]:
+    """The compiled version of one call of a settled model.
+
+    Weights are given to it as a list, since walking through the model at every call would take longer than one sample.
+    Into the call for a sample alone they are built, which saves handing them over; but not where some are all zero,
+    such as those of an ε that stays silent: XLA folds a product of 4096 rows with such weights away and adds memory
+    that it never wrote (jax 0.10.2 on CPU).
+    """
+    weights, rest = eqx.partition(owner, eqx.is_array)
+    leaves, tree = jax.tree.flatten(weights)
+
+    def call(leaves: list[Any], *given: Any) -> Any:
+        return jax.vmap(getattr(eqx.combine(tree.unflatten(leaves), rest), name))(*given)
+
+    if alone and all(np.any(x) for x in leaves if x.ndim > 1):
+        return jax.jit(partial(call, leaves))
+    return partial(jax.jit(call), leaves)
+
+
+def _padded(function: Callable[..., np.ndarray], arrays: list[np.ndarray]) -> np.ndarray:
+    n = len(arrays[0])
+    size = next(bucket for bucket in BUCKETS if bucket >= n)
+    if size > n:
+        arrays = [np.pad(x, ((0, size - n), (0, 0)), mode="edge") for x in arrays]
+    return function(*arrays)[:n]
 
 
 def _settled(owner: Any, width: Any) -> Any:
