@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import lsq_linear
+from scipy.linalg import block_diag
 from scipy.stats import t as student
 
 from lagnet.diagnosis.grams import BLOCK
+from lagnet.diagnosis.normal_equations import bounded_step, inverse, normal, power_of_all
 from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
 from lagnet.models.corrected import NamedEffect, torque_with
 from lagnet.rigid_body.consistent_fit import fit_consistent
@@ -23,11 +24,9 @@ from lagnet.rigid_body.inertia import (
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
-RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 BODIES = 2  # rounds over the bodies: making one consistent moves the others
 CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
-NOTHING = 1e-40  # of the largest power of a derivative: below it, a coordinate has no say
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -64,6 +63,44 @@ class _Slots:
         return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
 
 
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """A fit made linear at its end.
+
+    Args:
+        pieces: what was fitted.
+        residuals, jacobians: of each piece, shapes (len(keep), dof) and (len(keep), dof, n_coordinates), over σ.
+        slopes: shape (n_parameters, n_coordinates), of the parameters of all effects in order.
+    """
+
+    pieces: tuple[Piece, ...]
+    residuals: list[np.ndarray]
+    jacobians: list[np.ndarray]
+    slopes: np.ndarray
+
+
+def tangent_at(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Tangent:
+    """Residuals of fitted effects, and how they and the parameters change with the coordinates; see `refit`."""
+    work, x = _start(problem, effects, sigma)
+    jacobians = work.jacobian(x, np.ones(x.size, dtype=bool))
+    blocks = [_slopes(e, x[work.slots.of(n)]) for n, e in enumerate(effects)]
+    return Tangent(work.pieces, work.residuals(x), jacobians, np.asarray(block_diag(*blocks)))
+
+
+def blocks_of(problem: Problem, pieces: Sequence[Piece]) -> list[list[np.ndarray]]:
+    """Rows of each block of time of each piece, long against the memory of the residual."""
+    rate = problem.rate / max(1, int(np.median(np.diff(pieces[0].keep))))
+    length = max(8, int(BLOCK * rate / problem.bandwidth))
+    counts = [max(1, round(p.keep.size / length)) for p in pieces]
+    return [np.array_split(np.arange(p.keep.size), n) for p, n in zip(pieces, counts, strict=True)]
+
+
+def _start(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> tuple[_Work, np.ndarray]:
+    parts = [e.coordinates() for e in effects]
+    slots = _Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
+    return _Work(problem, spread(problem.fit), sigma, slots), np.concatenate(parts)
+
+
 def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Refit:
     """Gauss–Newton from the search's values, joints weighted by 1/σ².
 
@@ -74,10 +111,9 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
     """
     if not effects:
         return Refit((), (), np.zeros((0, 0)))
-    parts = [e.coordinates() for e in effects]
-    slots = _Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
-    work = _Work(problem, spread(problem.fit), sigma, slots)
-    x = work.descend(np.clip(np.concatenate(parts), *slots.bounds()), np.ones(int(slots.starts[-1]), dtype=bool))
+    work, start = _start(problem, effects, sigma)
+    slots = work.slots
+    x = work.descend(np.clip(start, *slots.bounds()), np.ones(start.size, dtype=bool))
     for _ in range(BODIES):
         x = _make_consistent(work, x)
     covariance, freedom = work.covariance(x)
@@ -128,19 +164,19 @@ class _Work:
             return x
         lower, upper = (b[free] for b in self.slots.bounds())
         rest = self.residuals(x)
-        error = _power(rest)
+        error = power_of_all(rest)
         for _ in range(STEPS):
-            gram, moment = _normal(self.jacobian(x, free), rest)
-            step = _bounded_step(gram, -moment, lower - x[free], upper - x[free])
+            gram, moment = normal(self.jacobian(x, free), rest)
+            step = bounded_step(gram, -moment, lower - x[free], upper - x[free])
             for shrink in (1.0, 0.5, 0.25, 0.1, 0.03):
                 trial = x.copy()
                 trial[free] = np.clip(x[free] + shrink * step, lower, upper)
                 moved = self.residuals(trial)
-                if _power(moved) < error:
+                if power_of_all(moved) < error:
                     break
             else:
                 return x
-            gain, x, rest, error = error - _power(moved), trial, moved, _power(moved)
+            gain, x, rest, error = error - power_of_all(moved), trial, moved, power_of_all(moved)
             if gain < DONE * error:
                 break
         return x
@@ -148,58 +184,22 @@ class _Work:
     def covariance(self, x: np.ndarray) -> tuple[np.ndarray, int]:
         """Sandwich of block scores, and the number of blocks: residuals that hang together widen the intervals."""
         rest, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
-        gram, _ = _normal(jacobian, rest)
-        inverse = _inverse(gram)
-        rate = self.problem.rate / max(1, int(np.median(np.diff(self.pieces[0].keep))))
-        length = max(8, int(BLOCK * rate / self.problem.bandwidth))
+        gram, _ = normal(jacobian, rest)
+        bread = inverse(gram)
         scores = []
-        for r, j in zip(rest, jacobian, strict=True):
-            for rows in np.array_split(np.arange(r.shape[0]), max(1, round(r.shape[0] / length))):
-                scores.append(np.einsum("njk,nj->k", j[rows], r[rows]))
+        for r, j, blocks in zip(rest, jacobian, blocks_of(self.problem, self.pieces), strict=True):
+            scores.extend(np.einsum("njk,nj->k", j[rows], r[rows]) for rows in blocks)
         table = np.array(scores)
         freedom = max(2, len(table) - 1)
         inflation = len(table) / max(1.0, len(table) - np.sqrt(x.size) - 1)
-        robust = inverse @ (table.T @ table) @ inverse * inflation
+        robust = bread @ (table.T @ table) @ bread * inflation
         count = sum(p.counts.sum() for p in self.pieces)
-        plain = inverse * _power(rest) / max(1.0, count - x.size)
+        plain = bread * power_of_all(rest) / max(1.0, count - x.size)
         variance = np.diag(robust)
         known = variance > 1e-200  # where the data say anything of a coordinate
         widest = np.ones(x.size)
         widest[known] = np.maximum(np.sqrt(np.diag(plain)[known] / variance[known]), 1.0)
         return robust * widest[:, None] * widest[None, :], freedom
-
-
-def _power(residuals: Sequence[np.ndarray]) -> float:
-    return float(sum(np.sum(r**2) for r in residuals))
-
-
-def _normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    flat = [j.reshape(-1, j.shape[2]) for j in jacobian]
-    gram = sum((j.T @ j for j in flat), np.zeros((flat[0].shape[1],) * 2))
-    moment = sum((j.T @ r.ravel() for j, r in zip(flat, residuals, strict=True)), np.zeros(flat[0].shape[1]))
-    return gram, moment
-
-
-def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    power = np.diag(gram)
-    scale = np.zeros(len(gram))  # a coordinate without any say, such as a sense of rotation, stays where it is
-    felt = power > max(NOTHING * float(np.max(power, initial=0.0)), 1e-200)
-    scale[felt] = 1.0 / np.sqrt(power[felt])
-    return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
-
-
-def _inverse(gram: np.ndarray) -> np.ndarray:
-    scaled, scale = _scaled(gram)
-    return np.linalg.inv(scaled) * scale[:, None] * scale[None, :]
-
-
-def _bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    scaled, scale = _scaled(gram)
-    root = np.linalg.cholesky(scaled).T
-    target = np.linalg.solve(root.T, moment * scale)
-    size = np.where(scale > 0.0, scale, 1.0)
-    low, high = np.minimum(lower, -1e-15) / size, np.maximum(upper, 1e-15) / size
-    return lsq_linear(root, target, bounds=(low, high), method="bvls").x * scale
 
 
 def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
@@ -211,10 +211,10 @@ def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
         base = _body_before(work.problem, effect)
         if is_physically_consistent(base + x[own]):
             continue
-        gram, _ = _normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
+        gram, _ = normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
         rest = np.setdiff1d(np.arange(x.size), own)
         cross = gram[np.ix_(own, rest)]
-        schur = gram[np.ix_(own, own)] - (cross @ _inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
+        schur = gram[np.ix_(own, own)] - (cross @ inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
         schur = 0.5 * (schur + schur.T)
         x = x.copy()
         x[own] = _nearest_body(schur, base + x[own], _prior(base, base + x[own])) - base
@@ -260,19 +260,24 @@ def _intervals(
     for n in range(len(slots.effects)):
         effect, at = slots.effects[n], slots.of(n)
         here = effect.at_coordinates(x[at]).parameters()
-        slopes = np.array([_slope(effect, x[at], k, here) for k in range(x[at].size)]).T  # (parameters, coordinates)
+        slopes = _slopes(effect, x[at])
         variance = np.einsum("pk,kl,pl->p", slopes, covariance[at, at], slopes)
         spread_of = dict(zip(here, width * np.sqrt(np.maximum(variance, 0.0)), strict=True))
         out.append({k: (float(x - spread_of[k]), float(x + spread_of[k])) for k, x in here.items()})
     return tuple(out)
 
 
-def _slope(effect: NamedEffect, x: np.ndarray, k: int, here: dict[str, float]) -> list[float]:
-    step = 1e-6 * max(abs(x[k]), 1e-3)
-    moved = x.copy()
-    moved[k] += step
-    there = effect.at_coordinates(moved).parameters()
-    return [(there[name] - here[name]) / step for name in here]
+def _slopes(effect: NamedEffect, x: np.ndarray) -> np.ndarray:
+    """Derivatives of an effect's parameters by its coordinates x, shape (n_parameters, n_coordinates)."""
+    here = np.array(list(effect.at_coordinates(x).parameters().values()))
+    columns = []
+    for k in range(x.size):
+        step = 1e-6 * max(abs(x[k]), 1e-3)
+        moved = x.copy()
+        moved[k] += step
+        there = np.array(list(effect.at_coordinates(moved).parameters().values()))
+        columns.append((there - here) / step)
+    return np.array(columns).T
 
 
 def _correlations(covariance: np.ndarray) -> np.ndarray:

@@ -1,0 +1,48 @@
+"""Normal equations of weighted residuals: sums, inverses that leave open directions alone, and bounded steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
+NOTHING = 1e-40  # of the largest power of a derivative: below it, a coordinate has no say
+
+
+def power_of_all(residuals: Iterable[np.ndarray]) -> float:
+    """Sum of squares."""
+    return float(sum(np.sum(r**2) for r in residuals))
+
+
+def normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Gram matrix (k, k) and moment (k,) of derivatives (n, dof, k) and residuals (n, dof) of several pieces."""
+    flat = [j.reshape(-1, j.shape[2]) for j in jacobian]
+    gram = sum((j.T @ j for j in flat), np.zeros((flat[0].shape[1],) * 2))
+    moment = sum((j.T @ r.ravel() for j, r in zip(flat, residuals, strict=True)), np.zeros(flat[0].shape[1]))
+    return gram, moment
+
+
+def inverse(gram: np.ndarray) -> np.ndarray:
+    """Inverse of a Gram matrix; rows and columns of coordinates without any say are zero."""
+    scaled, scale = _scaled(gram)
+    return np.linalg.inv(scaled) * scale[:, None] * scale[None, :]
+
+
+def bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """The step x between bounds that minimises x' gram x / 2 − moment' x, shape (k,)."""
+    scaled, scale = _scaled(gram)
+    root = np.linalg.cholesky(scaled).T
+    target = np.linalg.solve(root.T, moment * scale)
+    size = np.where(scale > 0.0, scale, 1.0)
+    low, high = np.minimum(lower, -1e-15) / size, np.maximum(upper, 1e-15) / size
+    return lsq_linear(root, target, bounds=(low, high), method="bvls").x * scale
+
+
+def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    power = np.diag(gram)
+    scale = np.zeros(len(gram))  # a coordinate without any say, such as a sense of rotation, stays where it is
+    felt = power > max(NOTHING * float(np.max(power, initial=0.0)), 1e-200)
+    scale[felt] = 1.0 / np.sqrt(power[felt])
+    return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
