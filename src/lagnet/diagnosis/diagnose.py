@@ -19,6 +19,7 @@ from lagnet.diagnosis.equal_in_motion import tie_equals
 from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench, make_workbench
+from lagnet.diagnosis.form_error import with_form_error
 from lagnet.diagnosis.grams import collect_grams
 from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over, missed_by
 from lagnet.diagnosis.library import Library, build_library
@@ -166,7 +167,7 @@ def diagnose(
         inquiry = inquire(problem, fit, unseen, noise, seed)
         return settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
 
-    inquiry = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
+    inquiry = with_form_error(at(bandwidth) if bandwidth is not None else best_band(at(None), at))
     seen = inquiry.problem
     corrected = CorrectedModel(robot, inquiry.effects, seen.slow, seen.held, left=missed_by(inquiry))
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
