@@ -192,8 +192,9 @@ def test_an_effect_without_size_adds_nothing(effect: Effect, ur5, sweep, shapes_
     joint = pick_joint(effect, ur5.n_dof, seed)
     motion, shapes = shapes_of(effect, sweep(ur5, seed).motion, joint)
     for shape in shapes[:3]:
-        if only_size_one(effect, shape):  # a limit above every torque
-            values = {p.name: 10.0 * float(np.abs(motion.load).max()) for p in effect.parameters}
+        if only_size_one(effect, shape):  # a limit above every torque, or a gap that is none
+            beyond = 0.0 if effect.absent is None else 10.0 * float(np.abs(motion.load).max())
+            values = {p.name: beyond for p in effect.parameters}
         else:
             values = effect.values(np.zeros(effect.bounds(shape)[0].size), shape)
         torque = effect.torque(motion, joint, values)

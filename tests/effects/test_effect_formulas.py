@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from lagnet.effects.catalogue import CATALOGUE, effect_named
+from lagnet.effects.gap import lag_in_gap
 
 ORACLE = 1e-8  # relative: two algorithms in float64
 SPLINE = 1e-4  # relative: a cubic spline between samples of smooth torque, four milliseconds apart
@@ -188,20 +189,45 @@ def test_torque_is_the_law_of_the_catalogue(name: str, ur5, sweep, seed: int) ->
 @given(seed=seeds)
 @few
 def test_backlash_shifts_the_link_to_the_flank_that_carries(ur5, sweep, seed: int) -> None:
-    drawn, joint, half_gap = sweep(ur5, seed), 1 + seed % 5, 2e-3
+    drawn, joint, half_gap = sweep(ur5, seed), 1 + seed % 5, 2e-4
     m = drawn.motion
     torque = CATALOGUE["backlash"].torque(m, joint, {"h": half_gap})
     load = m.load[:, joint]
-    firm = np.abs(load) > 0.6 * np.sqrt(np.mean(load**2))  # well on one flank, and so are the neighbours
-    for step in (1, 2):
-        firm &= (np.roll(load, step) * load > 0) & (np.roll(load, -step) * load > 0)
-    firm &= np.roll(firm, 2) & np.roll(firm, -2)
+    inertia = m.model.mass_matrix(m.q)[:, joint, joint]
+    changes = np.flatnonzero(np.diff(np.sign(load)))
+    firm = np.zeros(load.size, dtype=bool)
+    for begun, ended in zip([-1, *changes], [*changes, load.size - 1], strict=True):  # one flank all along
+        push = np.abs(load / inertia)[begun + 1 : ended + 1]
+        flown = np.cumsum(np.cumsum(push)) * np.median(np.diff(m.time)) ** 2
+        firm[begun + 1 : ended + 1] = (flown > 8.0 * half_gap) if begun >= 0 else True
+    firm &= np.roll(firm, 2) & np.roll(firm, -2) & np.roll(firm, 1) & np.roll(firm, -1)
     firm[:3] = firm[-3:] = False
     q = m.q.copy()
     q[:, joint] -= half_gap * np.sign(load)
     expected = m.model.inverse_dynamics(q, m.v, m.a) - m.load
-    assert firm.any()
     np.testing.assert_allclose(torque[firm], expected[firm], rtol=0, atol=1e-4 * np.abs(m.load).max())
+    assert firm.any()
+
+
+@given(seed=seeds)
+@few
+def test_backlash_lets_the_link_fall_free_between_the_flanks(ur5, sweep, seed: int) -> None:
+    """In flight the transmission carries nothing: the nominal torque and what the law adds cancel at the joint."""
+    drawn, joint, half_gap = sweep(ur5, seed), 1 + seed % 5, 0.1
+    m = drawn.motion
+    inertia = m.model.mass_matrix(m.q)[:, joint, joint]
+    lag = lag_in_gap(m.time, m.load[:, joint] / inertia, half_gap)
+    free = np.abs(lag) < 0.99 * half_gap
+    free &= np.roll(free, 2) & np.roll(free, -2) & np.roll(free, 1) & np.roll(free, -1)
+    free[:3] = free[-3:] = False
+    q, v, a = m.q.copy(), m.v.copy(), m.a.copy()
+    q[:, joint] -= lag
+    v[:, joint] -= np.gradient(lag, m.time)
+    a[:, joint] -= m.load[:, joint] / inertia
+    expected = m.model.inverse_dynamics(q, v, a) - m.load
+    torque = CATALOGUE["backlash"].torque(m, joint, {"h": half_gap})
+    scale = np.abs(m.load).max()
+    np.testing.assert_allclose(torque[free], expected[free], rtol=0, atol=DIFFERENCES * scale)
 
 
 def test_every_effect_has_a_law_written_by_hand() -> None:

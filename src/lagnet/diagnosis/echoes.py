@@ -2,7 +2,8 @@
 
 A transmission bends under the torque that it carries, and the recorded torque is the best account of that. But it holds
 its own noise, whose second derivative is much like the noise itself, so that on recordings with little left out
-elasticity or backlash may seem to explain noise. A prediction sees no recorded torque: what does nothing there goes.
+elasticity may seem to explain noise, or what the form of another law leaves. A prediction sees no recorded torque: what
+does nothing there goes.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.problem import Problem
+from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.prune import refit_and_prune
 from lagnet.diagnosis.refit import Refit
 from lagnet.diagnosis.settle import HARMLESS, without
@@ -23,20 +24,26 @@ from lagnet.models.corrected import NamedEffect, torque_with
 
 
 def drop_echoes(problem: Problem, bench: Workbench, found: Found, fitted: Refit) -> tuple[Found, Refit]:
-    """The selection less effects of the carried torque that do not help to predict held-out motion."""
+    """The selection less effects of the carried torque that do not help to predict, be it held-out or fitted motion."""
     for index in found.selection:
         if index not in found.selection or not effect_named(bench.library.hypotheses[index].effect).hears_torque:
             continue
         less, refitted = refit_and_prune(problem, bench, without(bench, found, index))
-        if predicted_error(problem, refitted.effects) < HARMLESS * predicted_error(problem, fitted.effects):
+        if any(_is_idle(problem, pieces, fitted, refitted) for pieces in (problem.holdout, problem.fit)):
             found, fitted = less, refitted
     return found, fitted
 
 
-def predicted_error(problem: Problem, effects: Sequence[NamedEffect]) -> float:
-    """Mean square of what effects leave in held-out torque that they are not shown, in shares of each joint's power."""
+def _is_idle(problem: Problem, pieces: Sequence[Piece], fitted: Refit, refitted: Refit) -> bool:
+    """Whether some pieces are predicted as well by the selection that has one effect less."""
+    without_it, with_it = (predicted_error(problem, pieces, fit.effects) for fit in (refitted, fitted))
+    return without_it < HARMLESS * with_it
+
+
+def predicted_error(problem: Problem, pieces: Sequence[Piece], effects: Sequence[NamedEffect]) -> float:
+    """Mean square of what effects leave in torque that they are not shown, in shares of each joint's power."""
     rests = []
-    for piece in problem.holdout:
+    for piece in pieces:
         blind = replace(piece.motion(problem), recorded=None)
         rests.append(problem.reduce(piece, piece.tau - torque_with(blind, effects)) * piece.counts)
     moving = problem.scale > 1e-9 * np.max(problem.scale)

@@ -1,45 +1,59 @@
 """Backlash: a gap between motor and link that the load crosses when it changes sign."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import final
 
 import numpy as np
 
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_reversals
+from lagnet.effects.gap import lag_in_gap
 from lagnet.effects.motion import Motion
-from lagnet.effects.shifted import carried_torque, shifted_torque
+from lagnet.effects.shifted import shifted_torque
 
-SMALL = 1e-4  # rad, gap at which the law is made linear
-SOFT = 0.05  # of the usual load: within it the flank that carries is not settled
+GAPS = tuple(float(h) for h in np.geomspace(5e-4, 0.03, 8))  # [rad] half gaps tried: transmissions of arms
+NEAR = (0.6, 1.6)  # a gap between two that are tried shows as a flight of another size, within these
+LIGHT = 1e-3  # of the joint's usual inertia: below it, a model's inertia is no inertia
 
 
 @final
 class Backlash(Effect):
-    """The link lies against one flank of the gap or the other, as the load pushes: q_l = q − h sign(τ)."""
+    """The link lies against the flank that its load presses it to, and flies freely across the gap when that changes.
+
+    r = τ(q − x, v − ẋ, a − ẍ) − τ(q, v, a) with x = h sign(τ) on a flank and ẍ = τ / M in between, τ being the load
+    of the bodies and M their inertia about the joint. How far a link flies depends on how wide the gap is, so that the
+    law is not linear in h.
+    """
 
     name = "backlash"
     title = "Backlash"
-    formula = "τ(q − h sign(τ)) − τ(q)"
+    formula = "τ(q − x) − τ(q), x = h sign(τ), ẍ = τ/M between"
     parameters = (Parameter("h", "h", "rad", "half the gap between motor and link", lower=0.0, upper=0.2),)
     reaches_all = True
-    hears_torque = True
     instantaneous = False
     stage = "body"
     shown_by = "loads that change sign often, and reversals"
     confused_with = ("stribeck_friction", "presliding_hysteresis", "time_delay")
     source = "swevers2007"
 
+    def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
+        return tuple({"h": h} for h in GAPS)
+
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        return (_displaced(motion, joint, carried_torque(motion, joint), SMALL) / SMALL)[..., None]
+        return self.torque(motion, joint, shape)[..., None]
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        return np.full(1, NEAR[0]), np.full(1, NEAR[1])
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
-        return {"h": float(coefficients[0])}
+        return {"h": float(shape["h"])}
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        if values["h"] == 0.0:
+        if not values["h"] > 0.0:
             return np.zeros_like(motion.load)
-        return _displaced(motion, joint, carried_torque(motion, joint), values["h"])
+        push = motion.load[:, joint] / _inertia(motion, joint)
+        lag = lag_in_gap(motion.time, push, values["h"])
+        return shifted_torque(motion, joint, -lag, -np.gradient(lag, motion.time), -_second(lag, motion.time))
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         load = motion.load[:, joint]
@@ -48,8 +62,21 @@ class Backlash(Effect):
         return needs_reversals(motion, joint)
 
 
-def _displaced(motion: Motion, joint: int, load: np.ndarray, half_gap: float) -> np.ndarray:
-    usual = SOFT * float(np.sqrt(np.mean(load**2))) + 1e-12
-    lag = half_gap * np.tanh(load / usual)
-    speed = np.gradient(lag, motion.time)
-    return shifted_torque(motion, joint, -lag, -speed, -np.gradient(speed, motion.time))
+def _inertia(motion: Motion, joint: int) -> np.ndarray:
+    """Inertia of the bodies about the joint while the others are led, shape (n,) [kg m²]."""
+
+    def make() -> np.ndarray:
+        faster = np.zeros_like(motion.time) + 1.0
+        return shifted_torque(motion, joint, np.zeros_like(motion.time), da=faster)[:, joint]
+
+    inertia = motion.remembered(("inertia about a joint", joint), make)
+    usual = max(float(np.median(np.abs(inertia))), 1e-12)
+    return np.maximum(inertia, LIGHT * usual)
+
+
+def _second(x: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Second difference: the mean of the second derivative about each sample, impacts and all, shape (n,)."""
+    out = np.zeros_like(x)
+    if x.size > 2:
+        out[1:-1] = np.diff(x, 2) / (time[2:] - time[1:-1]) / (time[1:-1] - time[:-2])
+    return out
