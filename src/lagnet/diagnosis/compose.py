@@ -27,7 +27,7 @@ from lagnet.diagnosis.verdict import (
     Unexplained,
     Verdict,
 )
-from lagnet.diagnosis.wording import advice, explain
+from lagnet.diagnosis.wording import SELDOM_MET, advice, explain
 from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 
@@ -139,6 +139,7 @@ def _effect(inquiry: Inquiry, n: int, contest: Contest, evidence: EffectEvidence
     joint = None if named.joint is None else inquiry.problem.joints[named.joint]
     status = "tied" if contest.tied else "named"
     words = explain(law, joint, parameters, contest.tied, evidence)
+    words += SELDOM_MET if inquiry.held_out[contest.index].silent else ""
     return EffectFound(law.name, joint, status, contest.tied, parameters, evidence, words)
 
 

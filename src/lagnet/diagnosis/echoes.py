@@ -14,11 +14,12 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
+from lagnet.diagnosis.evidence_of import HARMLESS
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.prune import refit_and_prune
 from lagnet.diagnosis.refit import Refit
-from lagnet.diagnosis.settle import HARMLESS, without
+from lagnet.diagnosis.settle import without
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect, torque_with
 

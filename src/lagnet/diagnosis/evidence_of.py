@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Fit, Workbench, fit_selection, take_off
+
+HARMLESS = 1.02  # an effect stays if the held-out error without it is larger by at least this factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,6 +22,8 @@ class HeldOut:
         share: of the mismatch that it alone explains, 0 to 1.
         at_joints: joints where it helps.
         shares: shape (dof,), share of each joint's mismatch that it alone explains.
+        silent: whether the held-out recordings hardly meet it, such as a limit that they never reach, so that what is
+            held out are blocks of the fitted recordings, some at a time.
     """
 
     without: float
@@ -26,6 +31,7 @@ class HeldOut:
     share: float
     at_joints: tuple[int, ...]
     shares: np.ndarray
+    silent: bool = False
 
 
 def unseen_nmse(bench: Workbench, fit: Fit, unseen: Workbench, scale: np.ndarray) -> np.ndarray:
@@ -47,19 +53,46 @@ def held_out_evidence(
     bench: Workbench, unseen: Workbench, found: Found, scale: np.ndarray, sigma: np.ndarray
 ) -> dict[int, HeldOut]:
     """For each selected hypothesis its part in the held-out fit."""
-    with_all = unseen_nmse(bench, found.fit, unseen, scale)
-    nominal = np.array([t[-1, -1] for t in unseen.total]) / unseen.samples / scale**2
-    out = {}
-    for index in found.selection:
-        rest = fit_selection(bench, [i for i in found.selection if i != index], sigma, folds=False)
-        without = unseen_nmse(bench, rest, unseen, scale)
-        joint = bench.library.hypotheses[index].joint
-        far = bench.library.hypotheses[index].law.reaches_all
-        at = np.flatnonzero(without > 1.02 * with_all) if far else np.array([joint])
-        at = at if at.size else np.arange(len(scale))
-        gained = without - with_all
-        share = float(np.clip(np.sum(gained[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
-        shares = np.clip(gained / np.maximum(nominal, 1e-300), 0.0, 1.0)
-        errors = float(np.mean(without[at])), float(np.mean(with_all[at]))
-        out[index] = HeldOut(*errors, share, tuple(int(j) for j in at), shares)
-    return out
+    return {index: _part(bench, unseen, found, index, scale, sigma) for index in found.selection}
+
+
+def _part(
+    bench: Workbench, unseen: Workbench, found: Found, index: int, scale: np.ndarray, sigma: np.ndarray
+) -> HeldOut:
+    rest = [i for i in found.selection if i != index]
+    silent = _is_silent(found.fit, unseen, index)
+    if silent:
+        with_all, without = (_in_turn(bench, chosen, scale, sigma) for chosen in (found.selection, rest))
+    else:
+        fewer = fit_selection(bench, rest, sigma, folds=False)
+        with_all, without = (unseen_nmse(bench, fit, unseen, scale) for fit in (found.fit, fewer))
+    nominal = _nominal_nmse(bench if silent else unseen, scale)
+    h = bench.library.hypotheses[index]
+    at = np.flatnonzero(without > HARMLESS * with_all) if h.law.reaches_all else np.array([h.joint])
+    at = at if at.size else np.arange(len(scale))
+    gained = without - with_all
+    share = float(np.clip(np.sum(gained[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
+    shares = np.clip(gained / np.maximum(nominal, 1e-300), 0.0, 1.0)
+    return HeldOut(
+        float(np.mean(without[at])), float(np.mean(with_all[at])), share, tuple(map(int, at)), shares, silent
+    )
+
+
+def _nominal_nmse(bench: Workbench, scale: np.ndarray) -> np.ndarray:
+    return np.array([t[-1, -1] for t in bench.total]) / bench.samples / scale**2
+
+
+def _in_turn(bench: Workbench, selection: Sequence[int], scale: np.ndarray, sigma: np.ndarray) -> np.ndarray:
+    """nMSE on groups of blocks of the fitted recordings, each predicted by a fit to the others, shape (dof,)."""
+    return fit_selection(bench, selection, sigma).sse / bench.samples / scale**2
+
+
+def _is_silent(fit: Fit, unseen: Workbench, index: int) -> bool:
+    """Whether an effect as fitted adds so little to the held-out torque that even the true law could not pass there."""
+    theta = fit.coefficients[index]
+    left = error_of(fit, unseen)
+    for joint, total in enumerate(unseen.total):
+        columns = unseen.columns(joint, [index])
+        if columns.size and theta @ total[np.ix_(columns, columns)] @ theta > (HARMLESS - 1.0) * left[joint]:
+            return False
+    return True

@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.arm_search import Found, refit_found
-from lagnet.diagnosis.evidence_of import held_out_evidence
+from lagnet.diagnosis.evidence_of import HARMLESS, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.search import LEAST_SHARE
 
 ROUNDS = 20
-HARMLESS = 1.02  # an effect stays if the held-out error without it is larger by at least this factor
 
 
 def settle_on(bench: Workbench, unseen: Workbench, found: Found, scale: np.ndarray) -> Found:

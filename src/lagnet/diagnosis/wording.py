@@ -10,6 +10,10 @@ from lagnet.effects.effect import Effect
 
 MOST_PARAMETERS = 4  # that a sentence lists
 LEAST_PERCENT = 0.01  # that is written as a number
+SELDOM_MET = (
+    " The held-out recordings hardly meet it:"
+    " these are errors on parts of the fitted ones, each predicted from the others."
+)
 
 
 def explain(
