@@ -9,8 +9,9 @@ from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_any_motion
 from lagnet.effects.motion import Motion
 
-PLATEAU = 0.985  # of the largest recorded torque: samples above it lie on the plateau, if there is one
-LEAST_ON_PLATEAU = 0.01  # share of the samples that make a plateau
+WIDE = 1.03  # highest over lowest torque of a plateau: noise, and what a filter leaves of its edges
+LEAST_ON_PLATEAU = 0.005  # share of the samples that make a plateau
+BEYOND = 0.3  # samples above a plateau, which edges overshoot, over those on it
 
 
 @final
@@ -30,12 +31,10 @@ class Saturation(Effect):
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
         if motion.recorded is None:
             return ()
-        size = np.abs(motion.recorded[:, joint])
-        limit = float(np.quantile(size, 0.999))
-        on_plateau = float(np.mean(size > PLATEAU * limit))
-        if on_plateau < LEAST_ON_PLATEAU or not np.any(np.abs(motion.load[:, joint]) > limit):
+        limit = _plateau(np.abs(motion.recorded[:, joint]))
+        if limit is None or not np.any(np.abs(motion.load[:, joint]) > limit):
             return ()
-        return ({"tau_max": limit}, {"tau_max": 0.98 * limit})
+        return ({"tau_max": limit},)
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
         return self.torque(motion, joint, shape)[:, None]
@@ -52,3 +51,15 @@ class Saturation(Effect):
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_any_motion(motion)
+
+
+def _plateau(size: np.ndarray) -> float | None:
+    """Middle of the level near which most of the largest torques lie, None where they do not gather."""
+    ordered = np.sort(size)
+    on = np.searchsorted(ordered, WIDE * ordered, side="right") - np.arange(size.size)
+    beyond = size.size - np.arange(size.size) - on
+    gathered = np.where(beyond <= BEYOND * on, on, 0)
+    first = int(np.argmax(gathered))
+    if gathered[first] < max(LEAST_ON_PLATEAU * size.size, 5) or ordered[first] <= 0.0:
+        return None
+    return float(np.median(ordered[first : first + on[first]]))
