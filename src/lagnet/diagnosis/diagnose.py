@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.adequacy import withdraw
-from lagnet.diagnosis.arm_search import Found, search_arm
+from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.compose import compose_verdict
 from lagnet.diagnosis.curves import collect_evidence
 from lagnet.diagnosis.drift import Drift, find_drifts
@@ -21,8 +21,9 @@ from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench, make_workbench
 from lagnet.diagnosis.form_error import with_form_error
 from lagnet.diagnosis.grams import collect_grams
+from lagnet.diagnosis.informed_search import search
 from lagnet.diagnosis.leftover import JointLeftover, Leftover, joint_leftovers, left_over, missed_by
-from lagnet.diagnosis.library import Library, build_library
+from lagnet.diagnosis.library import Library
 from lagnet.diagnosis.narrower import best_band
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
@@ -32,7 +33,6 @@ from lagnet.diagnosis.prune import refit_and_prune
 from lagnet.diagnosis.refit import Refit
 from lagnet.diagnosis.rest import friction_at_rest
 from lagnet.diagnosis.rivals import Contest, hold_contests
-from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.spells import Spell, set_aside
@@ -176,15 +176,8 @@ def diagnose(
 
 def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.ndarray, seed: int) -> Inquiry:
     """The steps of a diagnosis in their order, on a problem already posed."""
-    library = build_library(problem)
-    bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-    noise_power, torque_power = bench.samples * noise**2, bench.samples * problem.scale**2
-    found = search_arm(bench, noise_power, torque_power)
-    wider = look_again(problem, bench, found)
-    if wider is not None:
-        library = wider
-        bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-        found = search_arm(bench, noise_power, torque_power)
+    problem, bench, found = search(problem, noise)
+    library = bench.library
     judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     found = settle_on(bench, judge, found, problem.scale)
     found, fitted = drop_echoes(problem, bench, *refit_and_prune(problem, bench, found))
@@ -195,7 +188,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     if vague:
         found, fitted = refit_and_prune(problem, bench, all_without(bench, found, [*vague]))
         contests = _contests(problem, bench, found, fitted)
-    sigma = np.sqrt(np.maximum(found.fit.sse, noise_power) / bench.samples)
+    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
     told = tuple(vague.values())

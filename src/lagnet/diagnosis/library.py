@@ -12,6 +12,7 @@ from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.motion import Motion
+from lagnet.models.corrected import NamedEffect, load_before
 
 
 @dataclass(frozen=True)
@@ -94,15 +95,24 @@ class Library:
         """For each joint the reduced columns of a piece with the residual last, shape (len(keep), width + 1)."""
         motion = piece.motion(problem)
         residual = problem.residual(piece)
-        far = [problem.reduce(piece, self._columns(i, motion)) for i in self.reaching]
+        far = [problem.reduce(piece, self._columns(i, motion, problem.known)) for i in self.reaching]
         for joint in range(self.n_dof):
-            own = [self._columns(i, motion) for i in self.local[joint]]
+            own = [self._columns(i, motion, problem.known) for i in self.local[joint]]
             near = problem.reduce(piece, np.column_stack(own)) if own else np.zeros((piece.keep.size, 0))
             yield np.column_stack([near, *(f[:, joint] for f in far), residual[:, joint]])
 
-    def _columns(self, index: int, motion: Motion) -> np.ndarray:
+    def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
         h = self.hypotheses[index]
-        return h.law.columns(motion, h.joint, dict(h.shape))
+        return h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
+
+
+def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:
+    """The motion with the load that a law acts on."""
+    if not known or law.stage == "body":
+        return motion
+    return motion.with_load(
+        motion.remembered(f"load before {law.stage}", lambda: load_before(motion, known, law.stage))
+    )
 
 
 def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
@@ -115,8 +125,9 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
     abstentions: list[Abstention] = []
     for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
         for joint in (None,) if effect.whole_arm else range(problem.n_dof):
-            reason = _reason_against(effect, summary, joint, has_bodies)
-            shapes = () if reason else effect.shapes(summary, joint)
+            seen = _as_seen(summary, problem.known, effect)
+            reason = _reason_against(effect, seen, joint, has_bodies)
+            shapes = () if reason else effect.shapes(seen, joint)
             if reason:
                 abstentions.append(Abstention(effect.name, joint, reason))
             for shape in shapes:

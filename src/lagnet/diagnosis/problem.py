@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.effects.motion import Motion
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected import torque_along
+from lagnet.models.corrected import NamedEffect, torque_along
 from lagnet.recordings.conditioning import Conditioned, Stretch
 from lagnet.recordings.smoothing import SETTLING, low_pass
 from lagnet.types import InverseDynamics
@@ -63,6 +63,7 @@ class Problem:
         scale: shape (dof,), standard deviation of the recorded torque [N m].
         held: shape (dof,), share of the dry friction that stays at rest; None while it is not known.
         missed: shape (dof,), torque that the nominal model is known to miss, root mean square; None: not known [N m].
+        known: effects by which the load differs from the nominal one, for the columns of effects that act on it.
     """
 
     nominal: InverseDynamics
@@ -75,6 +76,7 @@ class Problem:
     scale: np.ndarray = field(default_factory=lambda: np.ones(0))
     held: np.ndarray | None = None
     missed: np.ndarray | None = None
+    known: tuple[NamedEffect, ...] = ()
 
     @property
     def n_dof(self) -> int:

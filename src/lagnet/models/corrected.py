@@ -10,6 +10,7 @@ from typing import Any, final
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.effect import Stage
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError
 from lagnet.models.tilted_bodies import tilted_weight
@@ -104,6 +105,12 @@ def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
         if stage == "body":
             load = load + tilted_weight(motion, effects)
     return load
+
+
+def load_before(motion: Motion, effects: Sequence[NamedEffect], stage: Stage) -> Trajectory:
+    """Torque that effects of a stage see: the nominal one with effects of the stages before, shape (n, dof) [N m]."""
+    earlier = STAGES[: STAGES.index(stage)]
+    return torque_with(motion, [e for e in effects if effect_named(e.effect).stage in earlier])
 
 
 @final
