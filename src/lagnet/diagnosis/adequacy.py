@@ -6,11 +6,12 @@ import numpy as np
 
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
-from lagnet.diagnosis.evidence_of import held_out_evidence
+from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.leftover import every_second_part
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
+from lagnet.effects.effect import Effect
 from lagnet.models.corrected import NamedEffect, torque_with
 
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
@@ -36,7 +37,7 @@ def withdraw(
     physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
     fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it. A joint that
     the names together make worse than the nominal model loses those whose torque there is larger than the mismatch,
-    since they cancel each other on the fitted motion alone.
+    since they cancel each other on the fitted motion alone; a far-reaching one that explains another joint stays.
 
     Args:
         effects: the selection refitted by the exact laws.
@@ -56,9 +57,16 @@ def withdraw(
     for index in found.selection:
         h, part = bench.library.hypotheses[index], parts[index]
         good = any(part.shares[j] >= max(needed.get(j, 0.0), ignored[j]) for j in part.at_joints)
-        if not good or any((h.effect, h.joint) in names for names in harmed.values()):
+        harms = any((h.effect, h.joint) in names for names in harmed.values())
+        if not good or (harms and not _stands_elsewhere(h.law, part, {*harmed}, shares)):
             out = without(bench, out, index)
     return out
+
+
+def _stands_elsewhere(law: Effect, part: HeldOut, harmed: set[int], shares: dict[int, float]) -> bool:
+    """Whether a far-reaching name alone explains a joint that is not harmed: harm may come of another's own physics."""
+    explained = (j for j in part.at_joints if j not in harmed and shares.get(j, 0.0) < MOST)
+    return law.reaches_all and any(part.shares[j] > 1.0 - MOST for j in explained)
 
 
 def _ignored(problem: Problem) -> np.ndarray:
