@@ -55,3 +55,14 @@ def test_a_rotor_is_tied_with_its_link_only_while_the_other_joints_rest(plant, a
     assert "link_inertia" in ties["rotor_inertia"]
     together = diagnose([real.record(55)], arm, [real.record(56)])
     assert [(e.effect, e.tied_with) for e in together.effects] == [("rotor_inertia", ())]
+
+
+def test_the_first_joint_is_coupled_to_none_before_it(plant, arm, at) -> None:
+    real = plant(at(0, lambda q, v, a, t: 2.0 * v + 2.0 * np.tanh(v / SHARP)))
+    hold = [1, 2]  # the coupling of a joint that moves alone could not be judged
+    result = diagnose([real.record(57, hold=hold)], arm, [real.record(58, hold=hold)])
+    assert {e.effect for e in result.effects} == {"viscous_friction", "coulomb_friction"}
+    assert not any("coupled_transmission" in e.tied_with for e in result.effects)
+    silent = {(a.effect, a.joint) for a in result.verdict.abstentions}
+    assert ("coupled_transmission", arm.joints[0]) not in silent
+    assert ("coupled_transmission", arm.joints[1]) in silent

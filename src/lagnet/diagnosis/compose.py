@@ -167,8 +167,6 @@ def _abstentions(inquiry: Inquiry) -> tuple[Abstained, ...]:
         law = effect_named(a.effect)
         if a.effect == "link_inertia" and a.joint == inquiry.problem.n_dof - 1:
             continue  # the payload stands for it
-        if a.effect == "coupled_transmission" and a.joint == 0:
-            continue  # no joint is before the first
         joint = None if a.joint is None else inquiry.problem.joints[a.joint]
         out.append(Abstained(a.effect, joint, a.reason, advice(law, joint)))
     return (*(_told_as_vague(inquiry, v) for v in inquiry.vague), *out)

@@ -124,7 +124,7 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
     widths: list[int] = []
     abstentions: list[Abstention] = []
     for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
-        for joint in (None,) if effect.whole_arm else range(problem.n_dof):
+        for joint in _places(effect, problem.n_dof):
             seen = _as_seen(summary, problem.known, effect)
             reason = _reason_against(effect, seen, joint, has_bodies)
             shapes = () if reason else effect.shapes(seen, joint)
@@ -134,6 +134,10 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
                 hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
                 widths.append(effect.columns(probe, joint, shape).shape[-1])
     return Library(tuple(hypotheses), tuple(widths), problem.n_dof, tuple(abstentions))
+
+
+def _places(effect: Effect, n_dof: int) -> list[int | None]:
+    return [j for j in ((None,) if effect.whole_arm else range(n_dof)) if effect.exists_at(j)]
 
 
 def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodies: bool) -> str | None:

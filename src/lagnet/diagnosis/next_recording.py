@@ -94,10 +94,9 @@ class Prospect:
         self.rate = min(standing.fit.rate, max(OF_BANDWIDTH * standing.fit.bandwidth, LEAST_RATE))
 
     def _about_motion(self, abstention: Abstention) -> bool:
-        """Whether the reason is the motion, not the model; the last link and the first joint have names elsewhere."""
+        """Whether the reason is the motion, not the model; the last link has another name."""
         law, joint = effect_named(abstention.effect), abstention.joint
-        last = self._standing.problem.n_dof - 1
-        elsewhere = (abstention.effect, joint) in (("link_inertia", last), ("coupled_transmission", 0))
+        elsewhere = (abstention.effect, joint) == ("link_inertia", self._standing.problem.n_dof - 1)
         return not elsewhere and law.excitation(self._summary, joint) == abstention.reason
 
     def torque(self, motion: CandidateMotion) -> Trajectory:

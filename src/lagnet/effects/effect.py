@@ -122,6 +122,10 @@ class Effect(ABC):
         lower, upper = self.bounds(shape)
         return bool(np.all(coefficients >= lower) and np.all(coefficients <= upper))
 
+    def exists_at(self, joint: int | None) -> bool:
+        """Whether an arm can have the effect at a joint at all, whatever moves."""
+        return True
+
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         """None if the motion can show the effect, else the reason why it cannot, for an abstention."""
         return None

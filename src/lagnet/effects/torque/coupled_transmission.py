@@ -63,7 +63,8 @@ class CoupledTransmission(Effect):
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         return bool(np.all(coefficients[:2] > 0.0) and coefficients[2] > -0.1 * abs(coefficients[0]))
 
+    def exists_at(self, joint: int | None) -> bool:
+        return joint != 0  # no joint is before the first
+
     def excitation(self, motion: Motion, joint: int) -> str | None:
-        if joint == 0:
-            return "there is no joint before the first"
         return needs_both_directions(motion, joint) or needs_both_directions(motion, joint - 1)
