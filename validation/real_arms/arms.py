@@ -39,14 +39,16 @@ class Arm:
     """A real arm.
 
     Args:
-        name: folder of the data set.
+        name: of the case.
         urdf: nominal model in it.
-        fit, holdout: recordings in it.
+        fit, holdout: recordings in it; no held-out one: the last fifth of each fitted one.
         torque_constant: [N m/A], where currents were recorded.
+        folder: of the data set.
         judge: pass lines from a verdict and the nMSE of each joint.
     """
 
     name: str
+    folder: str
     urdf: str
     fit: tuple[str, ...]
     holdout: tuple[str, ...]
@@ -119,11 +121,13 @@ def judge_emps(verdict: dict[str, Any], nmse: Sequence[float]) -> list[Line]:
 
 UR10E = Arm(
     name="ur10e",
+    folder="ur10e",
     urdf="ur10e.urdf",
     fit=("fit_0.csv.gz", "fit_1.csv.gz", "fit_2.csv.gz", "fit_3.csv.gz"),
     holdout=("holdout.csv.gz",),
     judge=judge_ur10e,
     torque_constant=(14.87, 13.26, 11.13, 10.62, 11.03, 11.47),
 )
-TX40 = Arm("staubli_tx40", "tx40.urdf", ("fit.csv.gz",), ("holdout.csv.gz",), judge_tx40)
-EMPS = Arm("emps", "emps.urdf", ("fit.csv.gz",), ("holdout.csv.gz",), judge_emps)
+TX40 = Arm("staubli_tx40", "staubli_tx40", "tx40.urdf", ("fit.csv.gz",), ("holdout.csv.gz",), judge_tx40)
+EMPS = Arm("emps", "emps", "emps.urdf", ("fit.csv.gz",), ("holdout.csv.gz",), judge_emps)
+EMPS_WHOLE = Arm("emps_whole", "emps", "emps.urdf", ("fit.csv.gz", "holdout.csv.gz"), (), judge_emps)

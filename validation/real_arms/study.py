@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from validation.real_arms.arms import EMPS, TX40, UR10E, Arm
+from validation.real_arms.arms import EMPS, EMPS_WHOLE, TX40, UR10E, Arm
 from validation.real_arms.metric import low_passed, nmse, read_torques, stretches
 
 from lagnet.diagnosis.diagnose import diagnose
@@ -24,19 +24,19 @@ from lagnet.models.loading import load_any
 from lagnet.recordings.load import load_recording
 
 HERE = Path(__file__).resolve().parent
-QUICK, ALL = (EMPS, TX40), (EMPS, TX40, UR10E)
+QUICK, ALL = (EMPS, EMPS_WHOLE, TX40), (EMPS, EMPS_WHOLE, TX40, UR10E)
 
 
 def study_arm(arm: Arm, data: Path, out: Path) -> dict[str, Any]:
     """One diagnosis: effects, errors and pass lines."""
-    folder = data / arm.name
+    folder = data / arm.folder
     robot = load_any(folder / arm.urdf)
     read = [
         [load_recording(folder / f, robot=robot, torque_constant=arm.torque_constant) for f in files]
         for files in (arm.fit, arm.holdout)
     ]
     start = time.perf_counter()
-    result = diagnose(read[0], robot, read[1], seed=0)
+    result = diagnose(read[0], robot, read[1] or None, seed=0)
     seconds = time.perf_counter() - start
     write_diagnosis(result, out)
     verdict = json.loads((out / "verdict.json").read_text())
