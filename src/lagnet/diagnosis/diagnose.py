@@ -38,6 +38,7 @@ from lagnet.diagnosis.sharpness import sharpen
 from lagnet.diagnosis.spells import Spell, set_aside
 from lagnet.diagnosis.too_vague import TooVague, all_without, too_vague
 from lagnet.diagnosis.unjudged import contests_with_unjudged
+from lagnet.diagnosis.unsure import drop_unsure
 from lagnet.diagnosis.verdict import EffectFound, Verdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected import CorrectedModel, NamedEffect
@@ -181,8 +182,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     judge = make_workbench(library, collect_grams(problem, library, problem.holdout))
     found = settle_on(bench, judge, found, problem.scale)
     found, fitted = drop_echoes(problem, bench, *refit_and_prune(problem, bench, found))
-    while (modest := withdraw(problem, bench, judge, found, fitted.effects, noise, seed)) is not found:
-        found, fitted = refit_and_prune(problem, bench, modest)
+    found, fitted = _sifted(problem, bench, judge, found, fitted, noise, seed)
     contests = _contests(problem, bench, found, fitted)
     vague = too_vague(library, contests)
     if vague:
@@ -193,6 +193,21 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
     told = tuple(vague.values())
     return Inquiry(problem, fit, unseen, noise, library, bench, judge, found, contests, parts, fitted, seed, vague=told)
+
+
+def _sifted(
+    problem: Problem, bench: Workbench, judge: Workbench, found: Found, fitted: Refit, noise: np.ndarray, seed: int
+) -> tuple[Found, Refit]:
+    """The selection less the names that fail, until none does: without one, others may."""
+    while True:
+        modest = withdraw(problem, bench, judge, found, fitted.effects, noise, seed)
+        if modest is not found:
+            found, fitted = refit_and_prune(problem, bench, modest)
+            continue
+        sure, refitted = drop_unsure(problem, bench, found, fitted)
+        if sure is found:
+            return found, fitted
+        found, fitted = sure, refitted
 
 
 def _contests(problem: Problem, bench: Workbench, found: Found, fitted: Refit) -> tuple[Contest, ...]:

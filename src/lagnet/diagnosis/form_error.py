@@ -43,7 +43,7 @@ def with_form_error(inquiry: Inquiry) -> Inquiry:
     power = np.maximum(inquiry.found.fit.sse, inquiry.found.scales.noise_power)
     errors = form_errors(problem, effects, np.sqrt(power / inquiry.bench.samples))
     old = (*inquiry.refit.intervals, *(p.intervals for p in inquiry.passing))
-    wide = [_widened(*pair) for pair in zip(old, errors, strict=True)]
+    wide = [widened(*pair) for pair in zip(old, errors, strict=True)]
     n = len(inquiry.refit.effects)
     refit = Refit(inquiry.refit.effects, tuple(wide[:n]), inquiry.refit.correlations)
     passing = tuple(replace(p, intervals=w) for p, w in zip(inquiry.passing, wide[n:], strict=True))
@@ -140,7 +140,8 @@ def _late(problem: Problem, piece: Piece, sigma: np.ndarray) -> np.ndarray:
     return (rate * piece.counts / sigma)[..., None] * np.eye(problem.n_dof)
 
 
-def _widened(intervals: Intervals, errors: dict[str, float]) -> Intervals:
+def widened(intervals: Intervals, errors: dict[str, float]) -> Intervals:
+    """Intervals with the half-widths that the error of the law's form adds."""
     out = {}
     for name, (low, high) in intervals.items():
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
