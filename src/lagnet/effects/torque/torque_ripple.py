@@ -11,6 +11,7 @@ from lagnet.effects.motion import Motion
 
 PER_TURN = (2.0, 400.0)  # periods per radian that are tried at all
 RESOLUTION = 0.35  # step of the scan, in periods over the range of the joint
+PERIODIC = 0.1  # of the order, the error beyond which it is not known that anything repeats
 TOLD = 2  # orders proposed from one residual
 
 
@@ -71,6 +72,11 @@ class TorqueRipple(Effect):
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         return values["amplitude"] * np.sin(values["N"] * motion.q[:, joint] + values["phase"])
+
+    def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
+        low, high = intervals["N"]
+        repeats = high - low <= PERIODIC * (high + low)
+        return repeats and super().is_determined(intervals)
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_position_range(motion, joint)
