@@ -29,15 +29,15 @@ def urdf(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def narrow(urdf: Path, tmp_path_factory) -> Path:
-    """Dry friction on the first joint, moved a little about one pose; the second stands still."""
+    """Dry friction on the second joint, moved a little about one pose; the first stands still."""
     robot, rng = load_description(urdf), np.random.default_rng(1)
     time = np.arange(1500) / RATE
     omega = 2.0 * np.pi * 0.4
     q, v, a = np.zeros((3, time.size, 2))
-    q[:, 0] = 0.3 + 0.03 * np.sin(omega * time)
-    v[:, 0], a[:, 0] = 0.03 * omega * np.cos(omega * time), -0.03 * omega**2 * np.sin(omega * time)
+    q[:, 1] = 0.3 + 0.03 * np.sin(omega * time)
+    v[:, 1], a[:, 1] = 0.03 * omega * np.cos(omega * time), -0.03 * omega**2 * np.sin(omega * time)
     tau = robot.inverse_dynamics(q, v, a)
-    tau[:, 0] += FRICTION * np.tanh(v[:, 0] / SHARP)
+    tau[:, 1] += FRICTION * np.tanh(v[:, 1] / SHARP)
     tau += 0.02 * rng.standard_normal(tau.shape)
     recording = Recording(time, q + 1e-5 * rng.standard_normal(q.shape), tau, robot.joints)
     return write_recording(recording, tmp_path_factory.mktemp("narrow") / "narrow.csv")
