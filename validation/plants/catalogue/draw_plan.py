@@ -57,6 +57,7 @@ ALIKE = {  # on one joint, these are hardly two things
     frozenset({"torque_gain", "saturation"}),
 }
 TRIES = 60
+GEAR_TRIES = 6  # each takes up to five runs of a stiff plant
 
 
 def draw_plan(seed: int, number: int, robots: tuple[str, ...] = ROBOTS) -> Plan:
@@ -115,13 +116,18 @@ def scale_of_plan(plan: Plan) -> OwnScale:
 
 
 def _listed(plan: Plan, rank: int, count: int, rng: np.random.Generator) -> tuple[Hidden, ...]:
-    """The first kind goes round the catalogue, so that every kind comes up; the others are drawn."""
+    """The first kind goes round the catalogue, so that every kind comes up; the others are drawn.
+
+    Where the plant's motions cannot show a kind, the next one comes first.
+    """
     kinds = tuple(LISTED)
     hidden: list[Hidden] = []
     while len(hidden) < count:
         kind = kinds[rank % len(kinds)] if not hidden else str(rng.choice(list(kinds)))
         entry = draw_hidden(plan, kind, rng)
-        if entry is not None and not any(_clash(entry, other) for other in hidden):
+        if entry is None and not hidden:
+            rank += 1
+        elif entry is not None and not any(_clash(entry, other) for other in hidden):
             hidden.append(entry)
     return tuple(hidden)
 
@@ -171,7 +177,7 @@ def draw_hidden(
 ) -> Hidden | None:
     """One listed cause, of at least a size, at a joint that can show it; None where no try found one."""
     scale = scale_of_plan(plan)
-    for _ in range(TRIES):
+    for _ in range(GEAR_TRIES if kind in GEARS else TRIES):
         j = int(rng.choice(arm_joints(plan.robot))) if joint is None else joint
         wanted = _log_uniform(rng, SMALLEST, LARGEST) if size is None else size
         values = LISTED[kind](scale, j, wanted, rng)
