@@ -123,7 +123,8 @@ class Prospect:
         stretch = Stretch(motion.time[:n], motion.q[:n], motion.v[:n], motion.a[:n], torque[:n], 0, 0, n - 1)
         conditioned = replace(self._standing.fit, stretches=(stretch,), rate=self.rate)
         posed = pose_problem(self._standing.problem.nominal, conditioned, conditioned)
-        return replace(posed, slow=self._standing.problem.slow)
+        told = self._standing.problem
+        return replace(posed, slow=told.slow, known=told.known)
 
     def _tables(self, posed: Problem, piece: Piece) -> list[np.ndarray]:
         tables = self._bench.library.tables(posed, piece)
