@@ -69,7 +69,7 @@ def _inertia(motion: Motion, joint: int) -> np.ndarray:
         faster = np.zeros_like(motion.time) + 1.0
         return shifted_torque(motion, joint, np.zeros_like(motion.time), da=faster)[:, joint]
 
-    inertia = motion.remembered(("inertia about a joint", joint), make)
+    inertia = motion.remembered(f"inertia about joint {joint}", make)
     usual = max(float(np.median(np.abs(inertia))), 1e-12)
     return np.maximum(inertia, LIGHT * usual)
 
