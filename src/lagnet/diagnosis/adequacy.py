@@ -51,7 +51,7 @@ def withdraw(
     if not needed and not harmed and problem.missed is None:
         return found
     ignored = _ignored(problem)
-    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    sigma = found.sigma(bench)
     parts = held_out_evidence(bench, unseen, found, problem.scale, sigma)
     out = found
     for index in found.selection:

@@ -64,6 +64,10 @@ class Found:
         """All selected hypotheses."""
         return (*self.far, *(i for own in self.local for i in own))
 
+    def sigma(self, bench: Workbench) -> np.ndarray:
+        """Root mean square of what it leaves at each joint, no less than the noise, shape (dof,) [N m]."""
+        return np.sqrt(np.maximum(self.fit.sse, self.scales.noise_power) / bench.samples)
+
 
 def search_arm(bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarray) -> Found:
     """The best selection: local searches alone, then with far-reaching hypotheses added while the evidence grows."""

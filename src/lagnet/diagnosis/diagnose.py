@@ -188,7 +188,7 @@ def inquire(problem: Problem, fit: Conditioned, unseen: Conditioned, noise: np.n
     if vague:
         found, fitted = refit_and_prune(problem, bench, all_without(bench, found, [*vague]))
         contests = _contests(problem, bench, found, fitted)
-    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    sigma = found.sigma(bench)
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
     parts = held_out_evidence(bench, judge, found, problem.scale, sigma)
     told = tuple(vague.values())

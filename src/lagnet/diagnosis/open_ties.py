@@ -105,7 +105,7 @@ def _joint_alternatives(bench: Workbench, found: Found, index: int) -> Alternati
 def _arm_alternatives(bench: Workbench, found: Found, index: int) -> Alternatives:
     """On the whole arm: a far-reaching effect beside the rest of the selection; for an effect of one joint, there."""
     hypotheses = bench.library.hypotheses
-    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    sigma = found.sigma(bench)
     rest = tuple(i for i in found.selection if i != index)
     fresh = [k for k in bench.library.reaching if k not in rest and hypotheses[k].place != hypotheses[index].place]
     if not hypotheses[index].law.reaches_all:

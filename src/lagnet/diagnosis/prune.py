@@ -30,7 +30,7 @@ def named_effects(library: Library, found: Found) -> tuple[NamedEffect, ...]:
 def refit_and_prune(problem: Problem, bench: Workbench, found: Found) -> tuple[Found, Refit]:
     """Refits by the exact laws and drops, smallest first, effects whose torque is then too small to be claimed."""
     for _ in range(ROUNDS):
-        sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+        sigma = found.sigma(bench)
         fitted = refit(problem, named_effects(bench.library, found), sigma)
         sizes = sizes_of(problem, fitted.effects)
         for n, (effect, intervals) in enumerate(zip(fitted.effects, fitted.intervals, strict=True)):

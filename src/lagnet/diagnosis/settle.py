@@ -18,7 +18,7 @@ def settle_on(bench: Workbench, unseen: Workbench, found: Found, scale: np.ndarr
     """Drops effects that do not help on held-out recordings, one by one, the most useless first."""
     found = prefer_plain(bench, found)
     for _ in range(ROUNDS):
-        sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+        sigma = found.sigma(bench)
         parts = held_out_evidence(bench, unseen, found, scale, sigma)
         ratios = {i: p.without / max(p.with_it, 1e-300) for i, p in parts.items()}
         useless = [i for i, r in ratios.items() if r <= HARMLESS]

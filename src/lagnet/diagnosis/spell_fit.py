@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lagnet.diagnosis.evidence_of import HARMLESS
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.refit import Refit, refit
 from lagnet.diagnosis.rivals import TIE
@@ -177,7 +178,7 @@ def _unseen(near: Problem, strand: Strand, effect: NamedEffect) -> tuple[float, 
         error[rows] = rest[rows] - columns[rows] @ theta
     count = np.maximum(part.counts.sum(axis=0), 1)
     without, with_it = (np.sum((x * part.counts) ** 2, axis=0) / count / near.scale**2 for x in (part.rest, error))
-    moved = without > 1.02 * with_it
+    moved = without > HARMLESS * with_it
     at = np.flatnonzero(moved) if moved.any() else np.arange(len(without))
     return float(np.mean(without[at])), float(np.mean(with_it[at]))
 

@@ -62,7 +62,7 @@ def far_equals(bench: Workbench, found: Found, index: int) -> set[str]:
     hypotheses = bench.library.hypotheses
     shown = bench.samples >= FEW  # of joints that rest, a few stray samples are no evidence
     bench = replace(bench, total=tuple(t * s for t, s in zip(bench.total, shown, strict=True)))
-    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    sigma = found.sigma(bench)
     pieces = bench.samples / found.scales.memory
     floor = np.maximum(1e-3 * found.scales.noise_power, 1e-300)
     rest = [i for i in found.selection if i != index]

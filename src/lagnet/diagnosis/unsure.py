@@ -7,8 +7,6 @@ disagree, hold the values at which it would not be there, is not claimed.
 
 from __future__ import annotations
 
-import numpy as np
-
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.form_error import form_errors, widened
@@ -32,7 +30,7 @@ def _unsure(problem: Problem, bench: Workbench, found: Found, fitted: Refit) -> 
     """Places in the selection of the effects that may be nothing."""
     if not fitted.effects:
         return []
-    sigma = np.sqrt(np.maximum(found.fit.sse, found.scales.noise_power) / bench.samples)
+    sigma = found.sigma(bench)
     errors = form_errors(problem, fitted.effects, sigma)
     wide = [widened(*pair) for pair in zip(fitted.intervals, errors, strict=True)]
     return [n for n, e in enumerate(fitted.effects) if not effect_named(e.effect).is_determined(wide[n])]
