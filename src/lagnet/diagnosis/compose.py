@@ -12,6 +12,7 @@ from lagnet._version import __version__
 from lagnet.diagnosis.hum import told_of_hum
 from lagnet.diagnosis.leftover import ABOVE, power_of, stacked
 from lagnet.diagnosis.localisation import locate
+from lagnet.diagnosis.one_clock import told_of_clock
 from lagnet.diagnosis.passing_words import changes_in_time, passing_effects, spells_in_fit, told_in_time
 from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.rivals import Contest
@@ -65,7 +66,7 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
 
 def _warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
     of_files = dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)
-    return (*of_files, *told_in_time(inquiry, fit, held), *told_of_hum(inquiry.fit, inquiry.problem.joints))
+    return (*of_files, *told_in_time(inquiry, fit, held), *told_of_clock(inquiry.fit), *told_of_hum(inquiry.fit, inquiry.problem.joints))
 
 
 def is_prismatic(problem: Problem, joint: int | None) -> bool:

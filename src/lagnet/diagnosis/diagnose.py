@@ -27,6 +27,7 @@ from lagnet.diagnosis.library import Library
 from lagnet.diagnosis.narrower import best_band
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
+from lagnet.diagnosis.one_clock import on_one_clock
 from lagnet.diagnosis.passing import Passing, settle_passing
 from lagnet.diagnosis.problem import Problem, pose_problem
 from lagnet.diagnosis.prune import refit_and_prune
@@ -159,16 +160,17 @@ def diagnose(
     ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
     known = nominal_error if nominal_error is not None else getattr(robot, "left", None)
 
-    def at(band: float | None) -> Inquiry:
-        fit = condition(fit_on, band)
-        unseen = condition(held, fit.bandwidth)
+    def at(band: float | None, shift: float = 0.0) -> Inquiry:
+        fit = condition(fit_on, band, shift)
+        unseen = condition(held, fit.bandwidth, shift)
         problem = replace(sharpen(pose_problem(robot, fit, unseen, ends_of)), missed=known)
         noise = noise_floor(problem, fit, seed)
         noise = noise if known is None else np.hypot(noise, known)
         inquiry = inquire(problem, fit, unseen, noise, seed)
         return settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
 
-    inquiry = with_form_error(at(bandwidth) if bandwidth is not None else best_band(at(None), at))
+    first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
+    inquiry = with_form_error(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
     seen = inquiry.problem
     corrected = CorrectedModel(robot, inquiry.effects, seen.slow, seen.held, left=missed_by(inquiry))
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)

@@ -51,6 +51,7 @@ class Conditioned:
         velocity_from, acceleration_from: "recorded" or "differentiated".
         noise_q, noise_v, noise_a, noise_tau: shape (dof,), what noise leaves after filtering, standard deviations.
         white_q, white_tau: shape (dof,), noise of the samples as recorded.
+        torque_shift: by which torques were read later than their stamps say [s].
     """
 
     stretches: tuple[Stretch, ...]
@@ -64,14 +65,18 @@ class Conditioned:
     noise_tau: np.ndarray
     white_q: np.ndarray
     white_tau: np.ndarray
+    torque_shift: float = 0.0
 
 
-def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -> Conditioned:
+def condition(
+    recordings: Sequence[Recording], bandwidth: float | None = None, torque_shift: float = 0.0
+) -> Conditioned:
     """Puts recordings on an even clock, smooths their motion without phase shift and differentiates it.
 
     Args:
         recordings: one or more of the same joints.
         bandwidth: [Hz], chosen from the data if not given.
+        torque_shift: torques are read that much later than their stamps say [s].
     """
     rate = float(np.median([r.rate for r in recordings]))
     noise = _noise(recordings, rate)
@@ -82,7 +87,7 @@ def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -
     for index, recording in enumerate(recordings):
         for rows in stretches_of(recording):
             if rows.stop - rows.start >= SHORTEST:
-                stretches.append(_stretch(recording, rows, index, rate, motion_band, blend))
+                stretches.append(_stretch(recording, rows, index, rate, motion_band, blend, torque_shift))
     noise_q = band_noise(noise["q"], rate, motion_band)
     noise_v, noise_a = _derived_noise(noise, rate, chosen, motion_band, blend)
     return Conditioned(
@@ -97,11 +102,12 @@ def condition(recordings: Sequence[Recording], bandwidth: float | None = None) -
         noise_tau=band_noise(noise["tau"], rate, chosen),
         white_q=noise["q"],
         white_tau=noise["tau"],
+        torque_shift=torque_shift,
     )
 
 
 def _stretch(
-    recording: Recording, rows: slice, index: int, rate: float, motion_band: float, blend: float | None
+    recording: Recording, rows: slice, index: int, rate: float, motion_band: float, blend: float | None, shift: float
 ) -> Stretch:
     time = recording.time[rows]
     clock = even_clock(time, rate)
@@ -111,7 +117,7 @@ def _stretch(
         difference = low_pass(resample(time, recording.v[rows], clock), rate, motion_band) - v
         v = v + difference - low_pass(difference, rate, blend)
     a = derivative(clock, v)
-    tau = resample(time, recording.tau[rows], clock)
+    tau = resample(time, recording.tau[rows], clock + shift)
     return Stretch(clock, q, v, a, tau, index, rows.start, rows.stop - 1)
 
 
