@@ -8,6 +8,7 @@ import pytest
 from lagnet.diagnosis.diagnose import diagnose
 
 MASS = 1.5  # [kg]
+TILTED = np.array([0.9, -0.7, -9.7])  # [m s⁻²]
 
 
 @pytest.fixture(scope="module")
@@ -39,3 +40,17 @@ def test_friction_behind_a_payload_is_no_gain(plant, arm, loaded, at, names) -> 
     result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
     own = {("viscous_friction", arm.joints[2]), ("coulomb_friction", arm.joints[2])}
     assert names(result) == {("payload", None), *own}
+
+
+def test_a_limit_behind_a_payload_on_a_tilted_base_hides_neither(plant, arm, at, names) -> None:
+    tilted = arm.with_payload(0.3, np.array([0.05, 0.08, 0.15]), 0.0012 * np.eye(3)).with_gravity(TILTED)
+    limit = 0.6 * float(np.abs(plant(robot=tilted).record(3).tau[:, 1]).max())
+    real = plant(at(1, lambda q, v, a, body: np.clip(body, -limit, limit) - body), robot=tilted)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("gravity_tilt", None), ("saturation", arm.joints[1])}
+
+
+def test_a_payload_heavier_than_the_arm_leaves_the_tilt_of_its_base_visible(plant, arm, loaded, names) -> None:
+    real = plant(robot=loaded.with_gravity(TILTED))
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("gravity_tilt", None)}

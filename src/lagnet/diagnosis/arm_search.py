@@ -69,11 +69,27 @@ class Found:
         return np.sqrt(np.maximum(self.fit.sse, self.scales.noise_power) / bench.samples)
 
 
-def search_arm(bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarray) -> Found:
-    """The best selection: local searches alone, then with far-reaching hypotheses added while the evidence grows."""
+def search_arm(
+    bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarray, start: Found | None = None
+) -> Found:
+    """The best selection: local searches alone, then with far-reaching hypotheses added while the evidence grows.
+
+    Args:
+        noise_power, torque_power: shape (dof,), as in `Scales`.
+        start: a selection of the same workbench to begin at as well, where one is known.
+    """
     scales = Scales(np.full(bench.library.n_dof, FIRST_MEMORY), noise_power, torque_power)
-    best = _settle(bench, (), scales, None)
-    best = _settle(bench, (), _remember(bench, best), best)
+    best = _grow(bench, _settle(bench, (), scales, None))
+    if start is None or not start.far:
+        return best
+    other = _grow(bench, _settle(bench, start.far, scales, start))
+    alike = replace(scales, memory=np.minimum(best.scales.memory, other.scales.memory))
+    return max((best, other), key=lambda f: refit_found(bench, replace(f, scales=alike)).score)
+
+
+def _grow(bench: Workbench, best: Found) -> Found:
+    """Far-reaching hypotheses added while the evidence grows, and dropped where they are not needed in the end."""
+    best = _settle(bench, best.far, _remember(bench, best), best)
     while True:
         candidates = _promising(bench, best)
         found = [_settle(bench, (*best.far, i), best.scales, best) for i in candidates]

@@ -38,20 +38,36 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, Workbench, Fou
         known = _known(bench.library, found)
         if not _is_news(problem, known, found.fit.sse > LEFT * bench.samples * noise**2):
             break
-        problem = replace(problem, known=known)
-        bench, found = _search_once(problem, noise)
+        problem, last = replace(problem, known=known), (bench.library, found)
+        bench, found = _search_once(problem, noise, last)
     return problem, bench, found
 
 
-def _search_once(problem: Problem, noise: np.ndarray) -> tuple[Workbench, Found]:
-    bench, found = _search_among(problem, build_library(problem), noise)
+def _search_once(
+    problem: Problem, noise: np.ndarray, last: tuple[Library, Found] | None = None
+) -> tuple[Workbench, Found]:
+    bench, found = _search_among(problem, build_library(problem), noise, last)
     wider = look_again(problem, bench, found)
-    return (bench, found) if wider is None else _search_among(problem, wider, noise)
+    return (bench, found) if wider is None else _search_among(problem, wider, noise, last)
 
 
-def _search_among(problem: Problem, library: Library, noise: np.ndarray) -> tuple[Workbench, Found]:
+def _search_among(
+    problem: Problem, library: Library, noise: np.ndarray, last: tuple[Library, Found] | None
+) -> tuple[Workbench, Found]:
     bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-    return bench, search_arm(bench, bench.samples * noise**2, bench.samples * problem.scale**2)
+    start = None if last is None else _carried_over(*last, library)
+    return bench, search_arm(bench, bench.samples * noise**2, bench.samples * problem.scale**2, start)
+
+
+def _carried_over(library: Library, found: Found, to: Library) -> Found:
+    """A selection in the indices of another library, less what that does not hold."""
+    index = {(h.place, h.shape): i for i, h in enumerate(to.hypotheses)}
+
+    def kept(chosen: tuple[int, ...]) -> tuple[int, ...]:
+        places = ((h.place, h.shape) for h in (library.hypotheses[i] for i in chosen))
+        return tuple(index[p] for p in places if p in index)
+
+    return replace(found, far=kept(found.far), local=tuple(kept(own) for own in found.local))
 
 
 def _known(library: Library, found: Found) -> tuple[NamedEffect, ...]:

@@ -13,6 +13,7 @@ from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected import NamedEffect, load_before
+from lagnet.models.tilted_bodies import TILT, weight_per_tilt
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,8 @@ class Library:
 
     def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
         h = self.hypotheses[index]
-        return h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
+        columns = h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
+        return columns + weight_per_tilt(motion, known) if known and h.effect == TILT else columns
 
 
 def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:

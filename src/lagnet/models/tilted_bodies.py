@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.inertia.gravity_tilt import tilts_of
 from lagnet.effects.motion import Motion
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
@@ -39,6 +40,15 @@ def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | floa
     gravity = np.asarray(motion.model.gravity, dtype=float)
     change = sum((_law(e).gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
     return sum((_weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
+
+
+def weight_per_tilt(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
+    """Holding torque of payloads and link changes per unit of each tilt, shape (n, dof, 2) [N m/rad]; 0 without any."""
+    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
+    if not bodies:
+        return 0.0
+    turns = tilts_of(np.asarray(motion.model.gravity, dtype=float)).T
+    return np.stack([sum((_weight(motion, e, g) for e in bodies), np.zeros_like(motion.load)) for g in turns], axis=2)
 
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:

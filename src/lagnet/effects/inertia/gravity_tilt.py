@@ -32,10 +32,7 @@ class GravityTilt(Effect):
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
-        gravity = np.asarray(motion.model.gravity, dtype=float)
-        first, second = horizontal_axes(gravity)
-        tilts = np.column_stack([-np.cross(first, gravity), -np.cross(second, gravity)])
-        return self._gravity_regressor(motion) @ tilts
+        return self._gravity_regressor(motion) @ tilts_of(np.asarray(motion.model.gravity, dtype=float))
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"theta_1": float(coefficients[0]), "theta_2": float(coefficients[1])}
@@ -55,6 +52,12 @@ class GravityTilt(Effect):
 
     def _gravity_regressor(self, motion: Motion) -> np.ndarray:
         return motion.remembered("gravity", lambda: motion.model.gravity_regressor(motion.q))
+
+
+def tilts_of(gravity: np.ndarray) -> np.ndarray:
+    """Change of gravity in the frame of the base per unit of each small tilt, shape (3, 2) [m/s² per rad]."""
+    first, second = horizontal_axes(gravity)
+    return np.column_stack([-np.cross(first, gravity), -np.cross(second, gravity)])
 
 
 def horizontal_axes(gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
