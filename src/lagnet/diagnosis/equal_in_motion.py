@@ -9,7 +9,7 @@ from lagnet.diagnosis.library import Library
 from lagnet.diagnosis.rivals import Contest
 from lagnet.models.corrected import NamedEffect
 
-UNEVEN, EVEN, SHIFT = "asymmetric_friction", "coulomb_friction", "torque_offset"
+UNEVEN, EVEN, SHIFT, SPRING = "asymmetric_friction", "coulomb_friction", "torque_offset", "joint_spring"
 
 
 def equal_in_motion(first: Iterable[str], second: Iterable[str]) -> bool:
@@ -20,7 +20,8 @@ def equal_in_motion(first: Iterable[str], second: Iterable[str]) -> bool:
 def tie_equals(library: Library, contests: Sequence[Contest], effects: Sequence[NamedEffect]) -> tuple[Contest, ...]:
     """The contests with ties between these names, whatever the odds: those are of how friction acts at standstill.
 
-    An offset larger than the friction has no equal: friction that pushes does not exist.
+    An offset larger than the friction has no equal: friction that pushes does not exist. Beside a spring, whose rest
+    position is not known, the offset of uneven friction is one of the spring's.
 
     Args:
         library: of the hypotheses.
@@ -35,6 +36,8 @@ def tie_equals(library: Library, contests: Sequence[Contest], effects: Sequence[
         if name == UNEVEN:
             return {EVEN, SHIFT}
         if name in (EVEN, SHIFT) and friction and offset and abs(offset["b"]) <= friction["Fc"]:
+            return {UNEVEN}
+        if name == EVEN and (SPRING, joint) in values:
             return {UNEVEN}
         return set()
 
