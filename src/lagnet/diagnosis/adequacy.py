@@ -8,7 +8,7 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
-from lagnet.diagnosis.leftover import every_second_part
+from lagnet.diagnosis.leftover import ABOVE, every_second_part
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
 from lagnet.effects.effect import Effect
@@ -17,7 +17,7 @@ from lagnet.models.corrected import NamedEffect, torque_with
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
-MOST = 0.2  # of a joint's mismatch, left unexplained: there a name must explain more, predictable or not
+MOST = 0.2  # of a joint's mismatch, left unexplained: a name that explains the rest has explained the joint
 WORSE = 1.5  # times the nominal error on held-out motion: names that together do that are not the joint's physics
 OUTGROWS = 0.5  # of the power that the nominal model is known to miss: what explains less is not told apart from it
 
@@ -46,8 +46,9 @@ def withdraw(
     harmed = _harmed(problem, effects, noise)
     shares = _left_shares(problem, problem.holdout, effects, noise)
     fitted = _left_shares(problem, problem.fit, effects, noise)
-    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items() if min(s, fitted.get(j, 0.0)) > MOST}
-    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, shares, seed).items()}
+    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
+    much = {j: s for j, s in shares.items() if s > MUCH}
+    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
     if not needed and not harmed and problem.missed is None:
         return found
     ignored = _ignored(problem)
@@ -106,7 +107,7 @@ def _left_shares(
     for joint in range(problem.n_dof):
         before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
         after = float(np.mean(left[:, joint] ** 2)) - noise[joint] ** 2
-        if before > 0 and after > MUCH * before:
+        if before > 0 and after > (ABOVE**2 - 1.0) * noise[joint] ** 2:
             shares[joint] = after / before
     return shares
 
