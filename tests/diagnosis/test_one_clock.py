@@ -1,4 +1,4 @@
-"""Torque that is held, or stamped half a cycle off: a property of the log, told as such and not as physics of joints."""
+"""Torque that is held, or stamped half a cycle off: told as a property of the log, not as physics of joints."""
 
 from __future__ import annotations
 

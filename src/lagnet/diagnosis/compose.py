@@ -66,7 +66,12 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
 
 def _warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
     of_files = dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)
-    return (*of_files, *told_in_time(inquiry, fit, held), *told_of_clock(inquiry.fit), *told_of_hum(inquiry.fit, inquiry.problem.joints))
+    return (
+        *of_files,
+        *told_in_time(inquiry, fit, held),
+        *told_of_clock(inquiry.fit),
+        *told_of_hum(inquiry.fit, inquiry.problem.joints),
+    )
 
 
 def is_prismatic(problem: Problem, joint: int | None) -> bool:
