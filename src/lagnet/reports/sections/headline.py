@@ -98,7 +98,7 @@ def _tiles(findings: Findings) -> list[dict[str, str]]:
     remainder = _remainder(findings)
     if not remainder:
         return [*tiles, _tile("0", "joints keep something unexplained")]
-    most = remainder[0]
+    most = max(remainder, key=lambda r: r["share_of_mismatch"] * findings.fit(r["joint"])["nmse_nominal"])
     rest = f", the most of {counted(len(remainder), 'joint')}" if len(remainder) > 1 else ""
     return [
         *tiles,
