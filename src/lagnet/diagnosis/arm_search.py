@@ -70,25 +70,22 @@ class Found:
 
 
 def search_arm(
-    bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarray, start: Found | None = None
+    bench: Workbench, noise_power: np.ndarray, torque_power: np.ndarray, starts: Sequence[Found | None] = (None,)
 ) -> Found:
-    """The best selection: local searches alone, then with far-reaching hypotheses added while the evidence grows.
+    """The best selection that grows from some starts.
 
     Args:
         noise_power, torque_power: shape (dof,), as in `Scales`.
-        start: a selection of the same workbench to begin at as well, where one is known.
+        starts: selections of the same workbench; None: from nothing.
     """
     scales = Scales(np.full(bench.library.n_dof, FIRST_MEMORY), noise_power, torque_power)
-    best = _grow(bench, _settle(bench, (), scales, None))
-    if start is None or not start.far:
-        return best
-    other = _grow(bench, _settle(bench, start.far, scales, start))
-    alike = replace(scales, memory=np.minimum(best.scales.memory, other.scales.memory))
-    return max((best, other), key=lambda f: refit_found(bench, replace(f, scales=alike)).score)
+    grown = [_grow(bench, _settle(bench, start.far if start else (), scales, start)) for start in starts]
+    alike = replace(scales, memory=np.min([f.scales.memory for f in grown], axis=0))
+    return max(grown, key=lambda f: refit_found(bench, replace(f, scales=alike)).score)
 
 
 def _grow(bench: Workbench, best: Found) -> Found:
-    """Far-reaching hypotheses added while the evidence grows, and dropped where they are not needed in the end."""
+    """Local searches, far-reaching hypotheses added while the evidence grows, and dropped where they are not needed."""
     best = _settle(bench, best.far, _remember(bench, best), best)
     while True:
         candidates = _promising(bench, best)
@@ -205,9 +202,14 @@ def _matters(bench: Workbench, found: Found, index: int) -> bool:
     """Whether a far-reaching hypothesis takes a noticeable part off the error of some joint."""
     sigma = _sigma(bench, found, found.scales)
     without = fit_selection(bench, [i for i in found.selection if i != index], sigma)
+    return bool(noticeable(bench, found.scales, without.sse, found.fit.sse).any())
+
+
+def noticeable(bench: Workbench, scales: Scales, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Joints whose squared error falls by a part that may be claimed, shape (dof,)."""
     nominal = np.array([t[-1, -1] for t in bench.total])
-    least = np.maximum(LEAST_TORQUE**2 * found.scales.torque_power, LEAST_OF_ALL * nominal)
-    return bool(np.any(without.sse - found.fit.sse > np.maximum(LEAST_SHARE * without.sse, least)))
+    least = np.maximum(LEAST_TORQUE**2 * scales.torque_power, LEAST_OF_ALL * nominal)
+    return before - after > np.maximum(LEAST_SHARE * before, least)
 
 
 def _drop_far(bench: Workbench, best: Found) -> Found:

@@ -18,6 +18,7 @@ from lagnet.diagnosis.library import Library, build_library
 from lagnet.diagnosis.problem import Problem
 from lagnet.diagnosis.prune import named_effects
 from lagnet.diagnosis.second_look import look_again
+from lagnet.diagnosis.shadows import drop_shadows
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect, load_before
 
@@ -40,7 +41,7 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, Workbench, Fou
             break
         problem, last = replace(problem, known=known), (bench.library, found)
         bench, found = _search_once(problem, noise, last)
-    return problem, bench, found
+    return problem, bench, drop_shadows(bench, found)
 
 
 def _search_once(
@@ -55,8 +56,8 @@ def _search_among(
     problem: Problem, library: Library, noise: np.ndarray, last: tuple[Library, Found] | None
 ) -> tuple[Workbench, Found]:
     bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-    start = None if last is None else _carried_over(*last, library)
-    return bench, search_arm(bench, bench.samples * noise**2, bench.samples * problem.scale**2, start)
+    starts = (None,) if last is None or not last[1].far else (None, _carried_over(*last, library))
+    return bench, search_arm(bench, bench.samples * noise**2, bench.samples * problem.scale**2, starts)
 
 
 def _carried_over(library: Library, found: Found, to: Library) -> Found:
