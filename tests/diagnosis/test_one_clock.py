@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from tests.diagnosis.conftest import NOISE
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.writing import holdout_table
 
 HALF = 0.005  # [s] of a sample
 
@@ -29,6 +31,9 @@ def test_a_shift_that_all_joints_share_is_no_physics_of_theirs(plant, by):
     assert not found.effects
     (told,) = (w for w in found.verdict.warnings if "stamped" in w)
     assert ("earlier" if by > 0 else "later") in told
+    table = holdout_table(found).to_pydict()  # holds what was recorded, and predictions of the same instants
+    rest = [np.std(np.subtract(table[f"tau_measured_{j}"], table[f"tau_corrected_{j}"])) for j in range(3)]
+    assert np.all(rest < 1.3 * NOISE * arm.usual_torque())
 
 
 def test_what_else_was_left_out_is_named_beside_it(plant, at):

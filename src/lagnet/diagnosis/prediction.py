@@ -14,7 +14,8 @@ from lagnet.types import InverseDynamics
 def torque_at_samples(model: InverseDynamics, recording: Recording, conditioned: Conditioned, index: int) -> np.ndarray:
     """Modelled torque at every sample of the recording, shape (n, dof) [N m]: nothing filtered away, nothing cut.
 
-    Samples in runs too short to be differentiated are taken as standing still.
+    Samples in runs too short to be differentiated are taken as standing still. Where stamps of torque and motion were
+    found to be apart, the torque is that of the time at which the recorded one was taken.
 
     Args:
         index: which of the conditioned recordings it is.
@@ -24,7 +25,7 @@ def torque_at_samples(model: InverseDynamics, recording: Recording, conditioned:
         if stretch.recording == index:
             along = torque_along(model, stretch.time, stretch.q, stretch.v, stretch.a)
             rows = slice(stretch.first, stretch.last + 1)
-            torque[rows] = resample(stretch.time, along, recording.time[rows])
+            torque[rows] = resample(stretch.time, along, recording.time[rows] - conditioned.torque_shift)
     lost = np.isnan(torque).any(axis=1)
     if lost.any():
         rest = np.zeros((int(lost.sum()), recording.n_dof))
