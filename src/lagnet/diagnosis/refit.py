@@ -10,23 +10,18 @@ from scipy.linalg import block_diag
 from scipy.stats import t as student
 
 from lagnet.diagnosis.grams import BLOCK
+from lagnet.diagnosis.nearest_body import body_before, nearest_body
 from lagnet.diagnosis.normal_equations import bounded_step, inverse, normal, power_of_all
 from lagnet.diagnosis.problem import Piece, Problem, spread_evenly
+from lagnet.diagnosis.slopes import correlations_of, slopes_of
 from lagnet.models.corrected import NamedEffect, torque_with
-from lagnet.rigid_body.consistent_fit import fit_consistent
-from lagnet.rigid_body.inertia import (
-    from_pseudo_inertia,
-    is_physically_consistent,
-    parameters_of_body,
-    pseudo_inertia,
-)
+from lagnet.rigid_body.inertia import is_physically_consistent
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 BODIES = 2  # rounds over the bodies: making one consistent moves the others
-CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -83,7 +78,7 @@ def tangent_at(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarr
     """Residuals of fitted effects, and how they and the parameters change with the coordinates; see `refit`."""
     work, x = _start(problem, effects, sigma)
     jacobians = work.jacobian(x, np.ones(x.size, dtype=bool))
-    blocks = [_slopes(e, x[work.slots.of(n)]) for n, e in enumerate(effects)]
+    blocks = [slopes_of(e, x[work.slots.of(n)]) for n, e in enumerate(effects)]
     return Tangent(work.pieces, work.residuals(x), jacobians, np.asarray(block_diag(*blocks)))
 
 
@@ -117,7 +112,7 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
     for _ in range(BODIES):
         x = _make_consistent(work, x)
     covariance, freedom = work.covariance(x)
-    return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), _correlations(covariance))
+    return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), correlations_of(covariance))
 
 
 def spread(pieces: Sequence[Piece], most: int = MOST_SAMPLES) -> tuple[Piece, ...]:
@@ -208,7 +203,7 @@ def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
         if effect.effect not in ("payload", "link_inertia"):
             continue
         own = np.arange(x.size)[work.slots.of(n)][:BODY]
-        base = _body_before(work.problem, effect)
+        base = body_before(work.problem, effect)
         if is_physically_consistent(base + x[own]):
             continue
         gram, _ = normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
@@ -217,39 +212,9 @@ def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
         schur = gram[np.ix_(own, own)] - (cross @ inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
         schur = 0.5 * (schur + schur.T)
         x = x.copy()
-        x[own] = _nearest_body(schur, base + x[own], _prior(base, base + x[own])) - base
+        x[own] = nearest_body(schur, base + x[own], base) - base
         x = work.descend(x, np.isin(np.arange(x.size), rest))
     return x
-
-
-def _nearest_body(gram: np.ndarray, wanted: np.ndarray, prior: np.ndarray) -> np.ndarray:
-    """The real body whose torque is nearest to that of the wanted parameters, shape (10,).
-
-    Where the data leave so much open that the fit has no minimum in reach, negative principal values are cut off.
-    """
-    moment = gram @ wanted
-    try:
-        return fit_consistent(gram, moment, prior, weight=CONSISTENCY * max(float(wanted @ moment), 1e-12))
-    except np.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
-        least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
-        return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
-
-
-def _body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
-    """Parameters (10,) of the body that an effect changes: none for a payload, else the modelled link."""
-    if effect.effect == "payload" or effect.joint is None:
-        return np.zeros(10)
-    bodies = problem.nominal.inertial_parameters
-    return np.asarray(bodies() if callable(bodies) else bodies)[effect.joint]
-
-
-def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """A real body near the wanted one: the modelled link, or a ball of the wanted mass where that is."""
-    if is_physically_consistent(base):
-        return base
-    mass = max(float(wanted[0]), 1e-3)
-    return parameters_of_body(mass, wanted[1:4] / mass, 0.01 * mass * np.eye(3))
 
 
 def _intervals(
@@ -260,27 +225,8 @@ def _intervals(
     for n in range(len(slots.effects)):
         effect, at = slots.effects[n], slots.of(n)
         here = effect.at_coordinates(x[at]).parameters()
-        slopes = _slopes(effect, x[at])
+        slopes = slopes_of(effect, x[at])
         variance = np.einsum("pk,kl,pl->p", slopes, covariance[at, at], slopes)
         spread_of = dict(zip(here, width * np.sqrt(np.maximum(variance, 0.0)), strict=True))
         out.append({k: (float(x - spread_of[k]), float(x + spread_of[k])) for k, x in here.items()})
     return tuple(out)
-
-
-def _slopes(effect: NamedEffect, x: np.ndarray) -> np.ndarray:
-    """Derivatives of an effect's parameters by its coordinates x, shape (n_parameters, n_coordinates)."""
-    here = np.array(list(effect.at_coordinates(x).parameters().values()))
-    columns = []
-    for k in range(x.size):
-        step = 1e-6 * max(abs(x[k]), 1e-3)
-        moved = x.copy()
-        moved[k] += step
-        there = np.array(list(effect.at_coordinates(moved).parameters().values()))
-        columns.append((there - here) / step)
-    return np.array(columns).T
-
-
-def _correlations(covariance: np.ndarray) -> np.ndarray:
-    variance = np.diag(covariance)
-    scale = np.where(variance > 1e-200, 1.0 / np.sqrt(np.maximum(variance, 1e-200)), 0.0)
-    return covariance * scale[:, None] * scale[None, :]

@@ -1,0 +1,52 @@
+"""Bodies that masses can have, in the place of fitted ones that none has."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.diagnosis.problem import Problem
+from lagnet.models.corrected import NamedEffect
+from lagnet.rigid_body.consistent_fit import fit_consistent
+from lagnet.rigid_body.inertia import (
+    from_pseudo_inertia,
+    is_physically_consistent,
+    parameters_of_body,
+    pseudo_inertia,
+)
+
+CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
+
+
+def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """The real body whose torque is nearest to that of the wanted parameters, shape (10,).
+
+    Where the data leave so much open that the fit has no minimum in reach, negative principal values are cut off.
+
+    Args:
+        gram: shape (10, 10), squared error per change of parameters.
+        wanted: shape (10,), parameters of the fit.
+        base: shape (10,), of the modelled body that was changed; zeros for a payload.
+    """
+    moment, prior = gram @ wanted, _prior(base, wanted)
+    try:
+        return fit_consistent(gram, moment, prior, weight=CONSISTENCY * max(float(wanted @ moment), 1e-12))
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
+        least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
+        return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
+
+
+def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
+    """Parameters (10,) of the body that an effect changes: none for a payload, else the modelled link."""
+    if effect.effect == "payload" or effect.joint is None:
+        return np.zeros(10)
+    bodies = problem.nominal.inertial_parameters
+    return np.asarray(bodies() if callable(bodies) else bodies)[effect.joint]
+
+
+def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """A real body near the wanted one: the modelled link, or a ball of the wanted mass where that is."""
+    if is_physically_consistent(base):
+        return base
+    mass = max(float(wanted[0]), 1e-3)
+    return parameters_of_body(mass, wanted[1:4] / mass, 0.01 * mass * np.eye(3))
