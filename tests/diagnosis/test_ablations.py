@@ -36,7 +36,7 @@ def test_every_place_is_there_and_holds_its_own_again_afterwards(rule: str, plac
 
 def test_a_function_is_replaced_wherever_it_was_imported() -> None:
     import lagnet.diagnosis.adequacy
-    import lagnet.diagnosis.diagnose as flow
+    import lagnet.diagnosis.inquiry as flow
 
     own = flow.withdraw
     with taken_out(ablation_named("ceiling").instead):

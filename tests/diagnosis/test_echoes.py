@@ -22,7 +22,7 @@ def test_one_joint_that_moves_alone_and_lacks_nothing_gets_no_name(plant, ur10, 
 
 def test_the_noise_would_have_been_named_otherwise(plant, ur10, monkeypatch) -> None:
     """Shows that the test above can fail: without the step, the second derivative of the noise is taken for bending."""
-    monkeypatch.setattr("lagnet.diagnosis.diagnose.drop_echoes", lambda problem, bench, found, fitted: (found, fitted))
+    monkeypatch.setattr("lagnet.diagnosis.inquiry.drop_echoes", lambda problem, bench, found, fitted: (found, fitted))
     real, rest = plant(robot=ur10), range(1, 6)
     result = diagnose([real.record(4, hold=rest)], ur10, [real.record(54, hold=rest)])
     assert "joint_elasticity" in {e.effect for e in result.effects}

@@ -33,7 +33,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 

@@ -31,7 +31,7 @@ from lagnet.models.corrected import torque_with
 from lagnet.recordings.recording import Recording
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 OF_SPEED = (
     "viscous_friction",

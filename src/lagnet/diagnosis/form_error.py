@@ -24,7 +24,7 @@ from lagnet.models.corrected import EDGES, NamedEffect
 from lagnet.recordings.smoothing import low_pass
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 Intervals = dict[str, tuple[float, float]]
 Linear = tuple[np.ndarray, np.ndarray]  # residuals and derivatives of a piece

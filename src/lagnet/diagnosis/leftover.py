@@ -14,7 +14,7 @@ from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.models.corrected import torque_with
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 HALVES = 6  # parts of the fitted motion that predict as many others
 ABOVE = 1.25  # residual over noise, root mean squares, from which a mismatch is significant

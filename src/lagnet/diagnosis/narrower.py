@@ -13,7 +13,7 @@ from lagnet.errors import DiagnosisError
 from lagnet.models.corrected import torque_with
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 PUZZLING = 0.3  # of a joint's mismatch: left unexplained, it is reason enough to look again
 CLEARLY = 2.0  # times the noise that it must exceed

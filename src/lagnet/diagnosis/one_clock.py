@@ -17,7 +17,7 @@ from lagnet.diagnosis.search import PRICE
 from lagnet.recordings.conditioning import Conditioned
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 HELD = 0.6  # of a sample: delays up to this may come of torques that are held, or stamped a half cycle off
 ALIKE = 0.25  # of the shift by which delays of single joints may differ from it

@@ -19,7 +19,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import EDGES, NamedEffect
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 SUSPECT = 2.0  # times the gain of the next best interval: reason enough to look again without the spell
 LOOKS = 3  # rounds in which spells and lasting effects settle

@@ -18,7 +18,7 @@ from lagnet.models.corrected import EDGES
 from lagnet.recordings.recording import Recording
 
 if TYPE_CHECKING:
-    from lagnet.diagnosis.diagnose import Inquiry
+    from lagnet.diagnosis.inquiry import Inquiry
 
 MOSTLY = 0.5  # of what is left in the held-out recordings: above it, what is left is said to depend on time
 
