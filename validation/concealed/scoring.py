@@ -123,10 +123,13 @@ def score(plan: Plan, witness: Witness, verdict: dict | None, outcome: dict) -> 
 
 
 def _joints(plan: Plan, claims: list[Claim], pairs: dict[int, tuple[int, str]]) -> tuple[int, int]:
+    """Claims that name a hidden effect and stand on its joint, the second half of a tie too, and all that name one."""
     taken = {c for c, _ in pairs.values()}
     hidden = {h.effect for h in plan.hidden}
-    off = [c for c, claim in enumerate(claims) if c not in taken and any(name in hidden for name in claim.names)]
-    return len(taken), len(taken) + len(off)
+    naming = [c for c, claim in enumerate(claims) if c in taken or any(name in hidden for name in claim.names)]
+    places = {(h.effect, h.joint) for h in plan.hidden}
+    there = [c for c in naming if c in taken or any((name, claims[c].joint) in places for name in claims[c].names)]
+    return len(there), len(naming)
 
 
 def _answers(plan: Plan, witness: Witness, verdict: dict | None, pairs: dict[int, tuple[int, str]]) -> list[Answer]:
