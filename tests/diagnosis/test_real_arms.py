@@ -66,7 +66,7 @@ def test_ur10e_has_friction_on_every_joint_and_no_payload(ur10e) -> None:
 
 @pytest.mark.shared_data
 def test_ur10e_torque_is_predicted_on_motion_not_seen(ur10e) -> None:
-    bounds = [0.010, 0.005, 0.003, 0.014, 0.05]
+    bounds = [0.010, 0.0013, 0.0013, 0.0062, 0.05]  # the second to fourth: with all but a network
     assert np.all(nmse_at_5_hz(ur10e)[:5] <= bounds)
 
 

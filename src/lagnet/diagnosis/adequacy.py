@@ -14,6 +14,7 @@ from lagnet.diagnosis.settle import without
 from lagnet.effects.effect import Effect
 from lagnet.models.corrected import NamedEffect, torque_with
 
+LITTLE = 0.01  # of a joint's mismatch: less, left unexplained, speaks against no name; real arms always leave some
 MUCH = 0.05  # of a joint's mismatch: left unexplained above noise, it casts doubt on the names given there
 SMOOTH = 0.3  # of what is left that a flexible model predicts, so that it is physics and not disturbance
 STANDS = 10.0  # a name stands if it alone explains this many times what is left
@@ -46,7 +47,8 @@ def withdraw(
     harmed = _harmed(problem, effects, noise)
     shares = _left_shares(problem, problem.holdout, effects, noise)
     fitted = _left_shares(problem, problem.fit, effects, noise)
-    needed = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
+    both = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
+    needed = {j: s for j, s in both.items() if s > LITTLE}
     much = {j: s for j, s in shares.items() if s > MUCH}
     needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
     if not needed and not harmed and problem.missed is None:
