@@ -43,8 +43,8 @@ class Plan:
 
 
 PLAN = {
-    "delan": Plan("delan", 3),
-    "delan-ffnn": Plan("delan-ffnn", 3),
+    "delan": Plan("delan", 5),
+    "delan-ffnn": Plan("delan-ffnn", 5),
     DISSIPATION: Plan(
         "delan-ffnn", 2, TrainingSettings(separation="joint", penalty=0.0), AugmentedSettings(form="dissipation")
     ),
