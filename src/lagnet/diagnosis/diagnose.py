@@ -18,6 +18,7 @@ from lagnet.diagnosis.narrower import best_band
 from lagnet.diagnosis.next_recording import Standing
 from lagnet.diagnosis.noise_floor import noise_floor
 from lagnet.diagnosis.one_clock import on_one_clock
+from lagnet.diagnosis.open_axes import settle_open_axes
 from lagnet.diagnosis.passing import settle_passing
 from lagnet.diagnosis.problem import pose_problem
 from lagnet.diagnosis.sharpness import sharpen
@@ -90,6 +91,7 @@ def diagnose(
     fit_on, held = _divide(recordings, robot, holdout)
     ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
     known = nominal_error if nominal_error is not None else getattr(robot, "left", None)
+    robot = settle_open_axes(robot, fit_on, held, known, seed)
 
     def at(band: float | None, shift: float = 0.0) -> Inquiry:
         fit = condition(fit_on, band, shift)
