@@ -63,6 +63,7 @@ class Effect(ABC):
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
     passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
     hears_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
+    plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod

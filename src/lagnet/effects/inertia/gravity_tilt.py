@@ -26,6 +26,7 @@ class GravityTilt(Effect):
     reaches_all = True
     stage = "body"
     needs_bodies = True
+    plain_terms = 3
     shown_by = "joints that do not turn about the vertical, in many poses"
     confused_with = ("encoder_offset", "payload", "torque_offset")
     absent = (("theta_1", 0.0), ("theta_2", 0.0))

@@ -32,6 +32,7 @@ class LinkInertia(LinearEffect):
     reaches_all = True
     needs_bodies = True
     stage = "body"
+    plain_terms = 3
     shown_by = "all joints moving at once, with strong accelerations and in many poses"
     confused_with = ("payload", "rotor_inertia", "gravity_tilt", "torque_gain")
     absent = tuple((n, 0.0) for n in NAMES)

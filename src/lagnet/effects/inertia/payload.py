@@ -31,6 +31,7 @@ class Payload(Effect):
     reaches_all = True
     stage = "body"
     needs_bodies = True
+    plain_terms = 3
     shown_by = "the wrist held in several orientations, and accelerated"
     confused_with = ("torque_gain", "gravity_tilt", "link_inertia")
     source = "atkeson1986"

@@ -19,6 +19,7 @@ class TorqueGain(Effect):
     formula = "(g − 1) τ"
     parameters = (Parameter("g", "g", "–", "recorded torque over true torque", lower=0.4, upper=2.5),)
     stage = "signal"
+    plain_terms = 3
     shown_by = "several levels of torque"
     confused_with = ("payload", "saturation", "rotor_inertia")
     absent = (("g", 1.0),)

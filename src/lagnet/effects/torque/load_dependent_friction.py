@@ -17,6 +17,7 @@ class LoadDependentFriction(LinearEffect):
     title = "Load-dependent friction"
     formula = "K |τ_load| s(v)"
     parameters = (Parameter("K", "K", "–", "friction torque per torque carried", lower=0.0, upper=1.0),)
+    plain_terms = 3
     shown_by = "motion in both directions under loads that vary, for instance at several inclinations of the link"
     confused_with = ("coulomb_friction",)
     source = "bittencourt2012"

@@ -17,6 +17,7 @@ class QuadraticDrag(LinearEffect):
     title = "Quadratic drag"
     formula = "Fd v |v|"
     parameters = (Parameter("Fd", "F_d", "N m s²/rad²", "torque per squared joint speed", lower=0.0),)
+    plain_terms = 1
     shown_by = "high speed as well as low"
     confused_with = ("viscous_friction",)
     source = "armstrong1994"
