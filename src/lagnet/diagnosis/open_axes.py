@@ -44,7 +44,9 @@ def settle_open_axes(
     """
     if not isinstance(robot, SerialChain) or robot.n_dof < 2:
         return robot
-    shape = OpenShape(robot, np.asarray(robot.training["noise"]) if missed is None else missed, seed)
+    if missed is None:
+        missed = np.asarray(robot.training.get("noise", np.zeros(robot.n_dof)))
+    shape = OpenShape(robot, missed, seed)
     if not shape.sureness.size:
         return robot
     fit = condition(recordings)
