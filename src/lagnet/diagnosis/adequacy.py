@@ -76,13 +76,13 @@ def _ignored(problem: Problem) -> np.ndarray:
     """Share of each joint's held-out mismatch that may be the nominal model's own ignorance, shape (dof,)."""
     if problem.missed is None:
         return np.zeros(problem.n_dof)
-    power = np.mean(_stack(problem, problem.holdout, ()) ** 2, axis=0)
+    power = np.mean(left_by(problem, problem.holdout, ()) ** 2, axis=0)
     return OUTGROWS * problem.missed**2 / np.maximum(power, 1e-300)
 
 
 def _harmed(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarray) -> dict[int, list]:
     """Joints that the names make worse on held-out motion, with the names whose torque there exceeds the mismatch."""
-    before, after = (np.mean(_stack(problem, problem.holdout, e) ** 2, axis=0) for e in ((), effects))
+    before, after = (np.mean(left_by(problem, problem.holdout, e) ** 2, axis=0) for e in ((), effects))
     worse = np.flatnonzero(after > WORSE * np.maximum(before, noise**2))
     if not worse.size:
         return {}
@@ -94,7 +94,7 @@ def _harmed(problem: Problem, effects: tuple[NamedEffect, ...], noise: np.ndarra
 
 def _added(problem: Problem, effect: NamedEffect) -> np.ndarray:
     """Mean squared torque of one effect on held-out motion, shape (dof,)."""
-    left, alone = (_stack(problem, problem.holdout, e) for e in ((), (effect,)))
+    left, alone = (left_by(problem, problem.holdout, e) for e in ((), (effect,)))
     return np.mean((left - alone) ** 2, axis=0)
 
 
@@ -104,7 +104,7 @@ def _left_shares(
     """Joints where mismatch is left above the noise, with its share of the joint's mismatch."""
     if not effects:
         return {}
-    nominal, left = _stack(problem, pieces, ()), _stack(problem, pieces, effects)
+    nominal, left = left_by(problem, pieces, ()), left_by(problem, pieces, effects)
     shares = {}
     for joint in range(problem.n_dof):
         before = float(np.mean(nominal[:, joint] ** 2)) - noise[joint] ** 2
@@ -120,7 +120,7 @@ def _predictable(
     """Those of the joints where what is left depends on the state of the arm, there or in parts of the fit."""
     if not shares:
         return {}
-    left = {name: _stack(problem, getattr(problem, name), effects) for name in ("fit", "holdout")}
+    left = {name: left_by(problem, getattr(problem, name), effects) for name in ("fit", "holdout")}
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     counts = np.concatenate([p.counts for p in problem.fit])
     one, other = every_second_part(len(counts))
@@ -135,6 +135,7 @@ def _predictable(
     return {j: s for j, s in shares.items() if depends(j)}
 
 
-def _stack(problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...]) -> np.ndarray:
+def left_by(problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...]) -> np.ndarray:
+    """Torque that effects leave on all pieces, where it counts, low-passed and decimated, shape (n, dof) [N m]."""
     parts = [problem.reduce(p, p.tau - torque_with(p.motion(problem), effects)) * p.counts for p in pieces]
     return np.concatenate(parts)

@@ -15,13 +15,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.diagnosis.adequacy import left_by
 from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.leftover import ABOVE
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected import NamedEffect, torque_with
+from lagnet.models.corrected import NamedEffect
 
 MUCH_LESS = 0.5  # of what the names leave, that the terms may leave
 NOTHING = 0.1  # of what the name was thought to explain: beside the terms it adds no more
@@ -129,13 +130,9 @@ def _chosen(kept: np.ndarray, terms: np.ndarray, wanted: np.ndarray, count: int)
 
 def _torques(problem: Problem, pieces: tuple[Piece, ...], effects: tuple[NamedEffect, ...]) -> list[np.ndarray]:
     """Mismatch, what all names leave, and the torque of each, shape (n, dof) each."""
-
-    def left(names: tuple[NamedEffect, ...]) -> np.ndarray:
-        parts = [problem.reduce(p, p.tau - torque_with(p.motion(problem), names)) * p.counts for p in pieces]
-        return np.concatenate(parts)
-
-    wanted = left(())
-    return [wanted, left(effects), *(wanted - left((e,)) for e in effects)]
+    wanted = left_by(problem, pieces, ())
+    alone = (wanted - left_by(problem, pieces, (e,)) for e in effects)
+    return [wanted, left_by(problem, pieces, effects), *alone]
 
 
 def _open(torques: list[list[np.ndarray]], joint: int, noise: float) -> bool:
