@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from lagnet.diagnosis.problem import Piece, Problem, pose_problem
+from lagnet.diagnosis.scaled_fit import scaled_weights
 from lagnet.effects.motion import Motion
 from lagnet.models.serial_chain.model import SerialChain
 from lagnet.models.serial_chain.open_shape import OpenShape
@@ -78,9 +79,7 @@ class _Load:
     def body(self, move: np.ndarray, noise: np.ndarray) -> np.ndarray:
         """Moments of the best body on the last link, shape (10,)."""
         columns, lacks = ((x / noise[:, None]).reshape(-1, x.shape[-1]) for x in (self._columns(move), self._lacks))
-        size = np.linalg.norm(columns, axis=0)
-        size = np.where(size > 0, size, 1.0)
-        return np.linalg.lstsq(columns / size, lacks[:, 0], rcond=RANK)[0] / size
+        return scaled_weights(columns, lacks[:, 0], RANK)
 
     def left(self, body: np.ndarray, move: np.ndarray) -> np.ndarray:
         """Torque that this body leaves, shape (n, dof)."""

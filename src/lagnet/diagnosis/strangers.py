@@ -20,6 +20,7 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.leftover import ABOVE
 from lagnet.diagnosis.problem import Piece, Problem
+from lagnet.diagnosis.scaled_fit import scaled_weights
 from lagnet.diagnosis.settle import without
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect
@@ -28,6 +29,7 @@ MUCH_LESS = 0.5  # of what the names leave, that the terms may leave
 NOTHING = 0.1  # of what the name was thought to explain: beside the terms it adds no more
 MATERIAL = 0.05  # of a joint's mismatch that a name explains, so that it is worth asking
 LITTLE = 0.01  # of a joint's mismatch: a joint left with less, by a name that matters there, speaks for it
+RANK = 1e-9
 NEW = 1e-3  # of a term's size that must be new beside the terms before it
 TURNS = (1, 2, 3)  # of the joint's own angle, along which friction may change
 
@@ -103,16 +105,8 @@ def _is_likeness(fit: _Side, unseen: _Side, k: int, most: int) -> bool:
 
 def _left(fit: _Side, unseen: _Side, fitted: np.ndarray, there: np.ndarray) -> np.ndarray:
     """Share of the mismatch left on both sides by columns weighted on the first."""
-    weights = _weights(fitted, fit.wanted)
+    weights = scaled_weights(fitted, fit.wanted, RANK)
     return np.array([fit.left(fitted, weights), unseen.left(there, weights)])
-
-
-def _weights(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    if not columns.shape[1]:
-        return np.zeros(0)
-    size = np.linalg.norm(columns, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    return np.linalg.lstsq(columns / size, wanted, rcond=1e-9)[0] / size
 
 
 def _chosen(kept: np.ndarray, terms: np.ndarray, wanted: np.ndarray, count: int) -> list[int]:
