@@ -27,6 +27,8 @@ class Plant:
 
     robot: Any
     laws: Sequence[Law] = ()
+    noise: float = NOISE
+    encoder: float = ENCODER
 
     def record(self, seed: int, seconds: float = 24.0, hold: Sequence[int] = (), one_way: Sequence[int] = ()):
         """What an encoder and a torque sensor write down of one motion.
@@ -50,8 +52,8 @@ class Plant:
             q[:, joint] += 3.0 * np.abs(v[:, joint]).max() * time
             v[:, joint] += 3.0 * np.abs(v[:, joint]).max()
         tau = self.torque(q, v, a)
-        tau = tau + NOISE * self.usual_torque() * rng.standard_normal(tau.shape)
-        return Recording(time, q + ENCODER * rng.standard_normal(q.shape), tau, self.robot.joints)
+        tau = tau + self.noise * self.usual_torque() * rng.standard_normal(tau.shape)
+        return Recording(time, q + self.encoder * rng.standard_normal(q.shape), tau, self.robot.joints)
 
     def usual_torque(self) -> np.ndarray:
         """Scatter of each joint's body torque over poses and accelerations, shape (dof,)."""

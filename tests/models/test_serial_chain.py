@@ -22,6 +22,7 @@ from lagnet.models.serial_chain.kinematics import Geometry, revolute_mask
 from lagnet.models.serial_chain.lifting import lifted_regressor
 from lagnet.models.serial_chain.model import SerialChain, learn_serial_chain, load_serial_chain
 from lagnet.models.serial_chain.newton_euler import SerialArm, moment_regressor
+from lagnet.models.serial_chain.reversals import sharpen_reversals
 from lagnet.models.serial_chain.search import search_axes
 from lagnet.models.serial_chain.separable import make_samples
 from lagnet.models.serial_chain.settings import SearchSettings, SerialChainSettings
@@ -262,6 +263,28 @@ def test_friction_and_noise_are_told_from_the_arm(robot: Robot) -> None:
     q = _motion(robot, 300, 77)[0]
     off = model.mass_matrix(q) - robot.mass_matrix(q)
     assert np.sum(off**2) < 1e-4 * np.sum(robot.mass_matrix(q) ** 2)
+
+
+def test_terms_that_torque_does_not_ask_for_are_dropped(robot: Robot, tmp_path: Path) -> None:
+    q, v, a = _motion(robot, 400, 3)
+    tau = robot.inverse_dynamics(q, v, a)
+    settings = SerialChainSettings(joint_terms=("rotor_inertia", "viscous_friction", "coulomb_friction"))
+    model, found = learn_serial_chain(q, v, a, tau, robot.joints, robot.joint_types, 0, settings)
+    assert found.unknowns.joint_terms == ()
+    assert not model.dynamics.lagrangian.rotor_inertia.any()
+    again = load_serial_chain(model.save(tmp_path / "arm"))
+    np.testing.assert_array_equal(again.inverse_dynamics(q, v, a), model.inverse_dynamics(q, v, a))
+
+
+def test_friction_reverses_as_sharply_as_it_was_recorded(robot: Robot) -> None:
+    q, v, a = _motion(robot, 1000, 2)
+    tau = robot.inverse_dynamics(q, v, a) + 2.0 * np.sign(v)
+    settings = SerialChainSettings(joint_terms=("coulomb_friction",))
+    model, _ = learn_serial_chain(q, v, a, tau, robot.joints, robot.joint_types, 0, settings)
+    sharp = sharpen_reversals(model, q, v, a, tau)
+    before, after = (np.sum((tau - arm.inverse_dynamics(q, v, a)) ** 2) for arm in (model, sharp))
+    assert after < 0.2 * before
+    assert np.all(sharp.dynamics.slow_speed < model.dynamics.slow_speed)
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import numpy as np
 
 from lagnet.errors import ModelError
 from lagnet.models.serial_chain.determinacy import Determinacy, determinacy
+from lagnet.models.serial_chain.held_out import Data, as_good, held_out_share, residual, sizes, split_samples
 from lagnet.models.serial_chain.kinematics import revolute_mask
 from lagnet.models.serial_chain.refit import Refit, Refitted
 from lagnet.models.serial_chain.search import search_axes, search_lengths
@@ -24,6 +25,7 @@ from lagnet.models.serial_chain.settings import SLOW, SerialChainSettings
 from lagnet.models.serial_chain.unknowns import Unknowns, normalise_gravity
 
 PRECISION = 1e-7  # of a joint's torque: noise below this is not told from rounding, and weighs no more
+NO_TERM = 1e-9  # share of the torque that no joint term is asked for: a few steps more would bring links there
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,14 +54,6 @@ class SerialChainFit:
     axes_costs: np.ndarray
     lengths_costs: np.ndarray
     determinacy: Determinacy
-
-
-@dataclass(frozen=True)
-class _Data:
-    """Samples (n, dof) for fitting and for choosing."""
-
-    train: tuple[np.ndarray, ...]
-    holdout: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -96,13 +90,13 @@ def fit_serial_chain(
     motion = tuple(np.asarray(part, dtype=float) for part in (q, v, a, tau))
     _check(motion, unknowns)
     rng = np.random.default_rng(seed)
-    data = _split(motion, settings.holdout, rng)
+    data = split_samples(motion, settings.holdout, rng)
     with jax.enable_x64(True):
         refit = Refit(unknowns)
         candidates = _candidates(unknowns, data, rng, settings, refit)
-        scores = [_score(unknowns, data, candidate.free) for candidate in candidates]
+        scores = [held_out_share(unknowns, data, candidate.free) for candidate in candidates]
         best = candidates[int(np.argmin([np.mean(score) for score in scores]))]
-        return _finish(unknowns, data, best, refit)
+        return _simplest(unknowns, data, best, refit)
 
 
 def _unknowns(v: np.ndarray, joint_types: Sequence[str], settings: SerialChainSettings) -> Unknowns:
@@ -132,17 +126,11 @@ def _least_samples(unknowns: Unknowns) -> int:
     return int(np.ceil(2.5 * (linear + unknowns.n_angles) / unknowns.n_dof)) + 10
 
 
-def _split(motion: tuple[np.ndarray, ...], share: float, rng: np.random.Generator) -> _Data:
-    order = rng.permutation(motion[0].shape[0])
-    kept = max(int(share * order.size), 1)
-    return _Data(tuple(part[order[kept:]] for part in motion), tuple(part[order[:kept]] for part in motion))
-
-
 def _candidates(
-    unknowns: Unknowns, data: _Data, rng: np.random.Generator, settings: SerialChainSettings, refit: Refit
+    unknowns: Unknowns, data: Data, rng: np.random.Generator, settings: SerialChainSettings, refit: Refit
 ) -> list[_Candidate]:
     """Arms that the search ends at, each refitted on all training samples."""
-    size = _sizes(data.train[3])
+    size = sizes(data.train[3])
     rows = slice(0, max(200, int(np.ceil(12 * unknowns.relaxed_size / unknowns.n_dof))))
     few = make_samples(*(part[rows] for part in data.train), noise=size)
     axes = search_axes(unknowns, few, rng, settings.search)
@@ -156,7 +144,7 @@ def _candidates(
 
 
 def _refit_with_noise(
-    data: _Data, x: np.ndarray, w: np.ndarray, size: np.ndarray, rounds: int, refit: Refit
+    data: Data, x: np.ndarray, w: np.ndarray, size: np.ndarray, rounds: int, refit: Refit
 ) -> tuple[Refitted, np.ndarray]:
     """Free refit, joints weighed by 1 / noise as their residual shows it."""
     noise, links = size, 10 * refit.unknowns.n_dof
@@ -164,7 +152,7 @@ def _refit_with_noise(
     w = np.concatenate([moments.ravel(), w[links:]])
     found = refit.free(make_samples(*data.train, noise=noise), x, w)
     for _ in range(rounds):
-        noise = np.maximum(_residual(refit.unknowns, data.train, found).std(axis=0), PRECISION * size)
+        noise = np.maximum(residual(refit.unknowns, data.train, found).std(axis=0), PRECISION * size)
         if np.all(noise == PRECISION * size):
             noise = size
             break
@@ -172,12 +160,24 @@ def _refit_with_noise(
     return found, noise
 
 
-def _finish(unknowns: Unknowns, data: _Data, best: _Candidate, refit: Refit) -> SerialChainFit:
+def _simplest(unknowns: Unknowns, data: Data, best: _Candidate, refit: Refit) -> SerialChainFit:
+    """The arm without its joint terms where held-out torque does not ask for them, else with them."""
+    if unknowns.joint_terms:
+        rigid = replace(unknowns, joint_terms=())
+        alone = Refit(rigid)
+        samples = make_samples(*data.train, noise=best.noise)
+        free = alone.free(samples, best.free.x, best.free.w[: 10 * unknowns.n_dof])
+        if as_good(held_out_share(rigid, data, free), held_out_share(unknowns, data, best.free), NO_TERM):
+            return _finish(rigid, data, replace(best, free=free), alone)
+    return _finish(unknowns, data, best, refit)
+
+
+def _finish(unknowns: Unknowns, data: Data, best: _Candidate, refit: Refit) -> SerialChainFit:
     """Ask for links that can exist, and keep them unless held-out torque denies them."""
     samples: Samples = make_samples(*data.train, noise=best.noise)
     physical = refit.physical(samples, best.free)
-    free_score, physical_score = _score(unknowns, data, best.free), _score(unknowns, data, physical)
-    fine = bool(np.all(physical_score <= 1.05 * free_score + 1e-13))
+    free_score, physical_score = held_out_share(unknowns, data, best.free), held_out_share(unknowns, data, physical)
+    fine = as_good(physical_score, free_score)
     chosen = physical if fine else best.free
     links = 10 * unknowns.n_dof
     known = determinacy(chosen.sums.gram, unknowns.n_dof, len(unknowns.joint_terms))
@@ -190,23 +190,8 @@ def _finish(unknowns: Unknowns, data: _Data, best: _Candidate, refit: Refit) -> 
         physical=fine,
         nmse=physical_score if fine else free_score,
         physical_nmse=physical_score,
-        noise=_residual(unknowns, data.train, chosen).std(axis=0),
+        noise=residual(unknowns, data.train, chosen).std(axis=0),
         axes_costs=best.axes,
         lengths_costs=best.lengths,
         determinacy=known,
     )
-
-
-def _score(unknowns: Unknowns, data: _Data, found: Refitted) -> np.ndarray:
-    """Residual over variance of held-out torque, per joint."""
-    residual = _residual(unknowns, data.holdout, found)
-    return np.mean(residual**2, axis=0) / _sizes(data.holdout[3]) ** 2
-
-
-def _residual(unknowns: Unknowns, motion: tuple[np.ndarray, ...], found: Refitted) -> np.ndarray:
-    return motion[3] - np.asarray(unknowns.torque(found.x, found.w, *motion[:3]))
-
-
-def _sizes(tau: np.ndarray) -> np.ndarray:
-    size = tau.std(axis=0)
-    return np.where(size > 1e-12 * max(size.max(), 1e-300), size, max(size.max(), 1.0))

@@ -7,6 +7,7 @@ joints alone the unit of length is fixed by the size of gravity.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import final
 
@@ -176,6 +177,7 @@ def learn_serial_chain(
     settings = settings or SerialChainSettings()
     found = fit_serial_chain(q, v, a, tau, joint_types, seed, settings)
     features = fit_features(np.asarray(q, dtype=float), tuple(joint_types))
+    settings = replace(settings, joint_terms=found.unknowns.joint_terms)  # those that the torque asked for
     spec = ModelSpec(KIND, settings, tuple(joints), features, fit_scales(np.asarray(v), np.asarray(a), np.asarray(tau)))
     with jax.enable_x64(True):
         dynamics = _dynamics(found)

@@ -40,7 +40,8 @@ class SerialChainSettings:
     """What to fit and how.
 
     Args:
-        joint_terms: what each joint adds to the rigid arm; none for ideal torque.
+        joint_terms: what joints may add to the rigid arm, none for ideal torque; dropped where held-out torque does not
+            ask for them.
         holdout: share of the samples kept from fitting, to choose between candidates.
         candidates: minima of the relaxed problem that are carried on where none is exact.
         reweighings: rounds of estimating each joint's noise and refitting.
