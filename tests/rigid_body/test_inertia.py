@@ -93,3 +93,11 @@ def test_many_bodies_at_once_and_wrong_shapes():
         inertia.pseudo_inertia(np.zeros(9))
     with pytest.raises(ValueError, match=r"expected \(…, 4, 4\)"):
         inertia.from_pseudo_inertia(np.zeros((3, 3)))
+
+
+def test_least_density_of_a_ball_is_its_own() -> None:
+    mass, radius = 3.0, 0.07
+    ball = inertia.parameters_of_body(mass, np.array([0.3, -0.1, 0.2]), 0.4 * mass * radius**2 * np.eye(3))
+    assert inertia.least_density(ball) == pytest.approx(mass / (4.0 / 3.0 * np.pi * radius**3))
+    rod = inertia.parameters_of_body(mass, np.zeros(3), np.diag([1e-4, 0.04, 0.04]))
+    assert inertia.least_density(rod) < inertia.least_density(ball)

@@ -28,6 +28,7 @@ from lagnet.diagnosis.rivals import Contest, hold_contests
 from lagnet.diagnosis.settle import settle_on
 from lagnet.diagnosis.spells import Spell, set_aside
 from lagnet.diagnosis.strangers import drop_likenesses
+from lagnet.diagnosis.too_dense import drop_too_dense
 from lagnet.diagnosis.too_vague import TooVague, all_without, too_vague
 from lagnet.diagnosis.unjudged import contests_with_unjudged
 from lagnet.diagnosis.unsure import drop_unsure
@@ -113,6 +114,8 @@ def _sifted(
         modest = withdraw(problem, bench, judge, found, fitted.effects, noise, seed)
         if modest is found:
             modest = drop_likenesses(problem, bench, found, fitted.effects, noise)
+        if modest is found:
+            modest = drop_too_dense(problem, bench, found, fitted.effects)
         if modest is not found:
             found, fitted = refit_and_prune(problem, bench, modest)
             continue

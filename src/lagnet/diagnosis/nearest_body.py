@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import chi2
 
 from lagnet.diagnosis.problem import Problem
 from lagnet.models.corrected import NamedEffect
@@ -14,26 +15,38 @@ from lagnet.rigid_body.inertia import (
     pseudo_inertia,
 )
 
-CONSISTENCY = 1e-7  # of the explained error, the weight of the distance to a prior body
+CONSISTENCY = 1e-7  # of the explained error, the least weight of the distance to a prior body
+WEIGHTS = 10.0 ** np.arange(4.0, -0.5, -0.5)  # times the least: from near the prior to near the data
+WITHIN = float(chi2.ppf(0.95, 10))  # squared error [noise variances] by which data do not tell two bodies apart
 
 
 def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """The real body whose torque is nearest to that of the wanted parameters, shape (10,).
+    """The likeliest real body whose torque is as near to that of the wanted parameters as any's, shape (10,).
 
-    Where the data leave so much open that the fit has no minimum in reach, negative principal values are cut off.
+    Of the bodies that data tell from the nearest one no better than chance, the one closest to the model is taken:
+    small moments that noise leaves open would else ask for masses beyond reason. Where the data leave so much open that
+    the fit has no minimum in reach, negative principal values are cut off.
 
     Args:
-        gram: shape (10, 10), squared error per change of parameters.
+        gram: shape (10, 10), squared error per change of parameters, in variances of the noise.
         wanted: shape (10,), parameters of the fit.
         base: shape (10,), of the modelled body that was changed; zeros for a payload.
     """
     moment, prior = gram @ wanted, _prior(base, wanted)
+    least = CONSISTENCY * max(float(wanted @ moment), 1e-12)
     try:
-        return fit_consistent(gram, moment, prior, weight=CONSISTENCY * max(float(wanted @ moment), 1e-12))
+        nearest = fit_consistent(gram, moment, prior, weight=least)
+        bound = _lost(gram, nearest - wanted) + WITHIN
+        likely = (fit_consistent(gram, moment, prior, weight=least * more) for more in WEIGHTS)
+        return next((body for body in likely if _lost(gram, body - wanted) <= bound), nearest)
     except np.linalg.LinAlgError:
         values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
         least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
         return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
+
+
+def _lost(gram: np.ndarray, change: np.ndarray) -> float:
+    return float(change @ gram @ change)
 
 
 def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:

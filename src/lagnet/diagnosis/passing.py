@@ -85,14 +85,15 @@ def _named(clean: Inquiry, scan: Scan) -> Inquiry:
     bursts = _bursts(pairs)
     others = (s for s in scan.spells if not any(s is t for t in (*bursts, *(t for t, _ in good))))
     nameless = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
-    fits = [f for _, f in good]
-    together = _refitted_together(set_aside(clean.problem, nameless), clean, fits)
+    together = _refitted_together(set_aside(clean.problem, nameless), clean, [f for _, f in good])
     n = len(lasting)
     found = []
-    for effect, intervals, fit in zip(together.effects[n:], together.intervals[n:], fits, strict=True):
-        if effect_named(effect.effect).is_determined(intervals):
-            wide = _widened(intervals, _caution(fit, scan.inflation), clean.problem.rate)
+    for effect, intervals, (spell, fit) in zip(together.effects[n:], together.intervals[n:], good, strict=True):
+        wide = _widened(intervals, _caution(fit, scan.inflation), clean.problem.rate)
+        if effect_named(effect.effect).is_determined(wide):
             found.append(Passing(effect, wide, fit, 0.0))
+        elif spell.gain > UNNAMED:
+            nameless = (*nameless, spell)
     rest = Refit(together.effects[:n], together.intervals[:n], together.correlations)
     shares = _shares(clean.problem, rest.effects, [p.effect for p in found])
     shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]

@@ -70,6 +70,18 @@ def triangle_inequality(parameters: np.ndarray) -> np.ndarray:
     return (moments[..., 0] + moments[..., 1] - moments[..., 2]) / np.maximum(moments[..., 2], np.finfo(float).tiny)
 
 
+def least_density(parameters: np.ndarray) -> np.ndarray:
+    """Density [kg/m³] that a body must reach somewhere to have these parameters, shape (…,); inf for a point mass.
+
+    Of all bodies of one mass and no more than one density a ball has the smallest moments about its centre: the density
+    is that of the ball of the same mass m and the same ½ tr I = ⅗ m R².
+    """
+    mass = _ten(parameters)[..., 0]
+    spread = 0.5 * np.trace(tensor_about_com(parameters), axis1=-2, axis2=-1) / mass
+    with np.errstate(divide="ignore"):
+        return mass / (4.0 / 3.0 * np.pi * np.maximum(5.0 / 3.0 * spread, 0.0) ** 1.5)
+
+
 def smallest_eigenvalue(parameters: np.ndarray) -> np.ndarray:
     """Smallest eigenvalue of the pseudo-inertia, over its trace, shape (…,): positive exactly for a real body.
 

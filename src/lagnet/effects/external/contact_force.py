@@ -12,6 +12,7 @@ from lagnet.effects.motion import Motion
 FORCE = ("Fx", "Fy", "Fz")
 POINT = ("px", "py", "pz")
 FARTHEST = 0.5  # [m] that the point may lie off the last joint, along each axis
+WITHIN = 0.99 * FARTHEST  # [m] up to which a fit has not run into that bound
 
 
 @final
@@ -66,6 +67,14 @@ class ContactForce(Effect):
         force, products = coefficients[:3], np.reshape(coefficients[3:], (3, 3))
         point = np.clip(products @ force / max(float(force @ force), 1e-300), -FARTHEST, FARTHEST)
         return self.values(force, dict(zip(POINT, map(float, point), strict=True)))
+
+    def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
+        """Whether some component of the force is not zero, and the point lies within reach: a push needs both.
+
+        A point pressed to the edge of what is asked stands for a moment without a force.
+        """
+        within = all(abs(sum(intervals[n])) < 2.0 * WITHIN for n in POINT)
+        return within and super().is_determined(intervals)
 
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         return needs_any_motion(motion)
