@@ -32,6 +32,7 @@ LITTLE = 0.01  # of a joint's mismatch: a joint left with less, by a name that m
 RANK = 1e-9
 NEW = 1e-3  # of a term's size that must be new beside the terms before it
 TURNS = (1, 2, 3)  # of the joint's own angle, along which friction may change
+TAUT = np.linspace(0.1, 0.9, 9)  # shares of the samples below the angle at which a cable or a bumper may go taut
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,8 +168,10 @@ def _sides(problem: Problem, torques: list[list[np.ndarray]], joint: int, noise:
 def _terms(problem: Problem, pieces: tuple[Piece, ...], joint: int) -> np.ndarray:
     """Plain terms that belong to no effect, low-passed as torque is, shape (n, terms)."""
     parts = []
+    taut = np.quantile(np.concatenate([p.q[:, joint] for p in problem.fit]), TAUT)
     for p in pieces:
-        table = np.column_stack(list(_term_columns(p.q, p.v, np.tanh(p.v / problem.slow), joint)))
+        columns = _term_columns(p.q, p.v, np.tanh(p.v / problem.slow), joint)
+        table = np.column_stack([*columns, *(np.maximum(p.q[:, joint] - angle, 0.0) for angle in taut)])
         parts.append(problem.reduce(p, table) * p.counts[:, [joint]])
     return np.concatenate(parts)
 
