@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
+import lagnet.diagnosis.echoes as echoes
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.rigid_body.robot import load_description
 
@@ -26,3 +29,15 @@ def test_the_noise_would_have_been_named_otherwise(plant, ur10, monkeypatch) -> 
     real, rest = plant(robot=ur10), range(1, 6)
     result = diagnose([real.record(4, hold=rest)], ur10, [real.record(54, hold=rest)])
     assert "joint_elasticity" in {e.effect for e in result.effects}
+
+
+@pytest.mark.parametrize(("left_blind", "idle"), [(0.93, True), (0.2, False)])
+def test_what_explains_only_torque_that_it_was_shown_is_idle(monkeypatch, left_blind: float, idle: bool) -> None:
+    """A hum is nine tenths explained by its own second derivative, and by no prediction of it."""
+
+    def error(problem, pieces, effects, shown=False):
+        return 1.0 if not effects else (0.1 if shown else left_blind)
+
+    monkeypatch.setattr(echoes, "predicted_error", error)
+    bent, straight = SimpleNamespace(effects=("elasticity",)), SimpleNamespace(effects=())
+    assert echoes._is_idle(None, (), bent, straight) == idle

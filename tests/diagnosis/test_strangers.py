@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 import lagnet.diagnosis.inquiry as steps
+from lagnet.diagnosis import strangers
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.problem import pose_problem
+from lagnet.recordings.conditioning import condition
 from lagnet.rigid_body.random_arm import random_arm
 
 ELABORATE = {"torque_gain", "link_inertia", "gravity_tilt", "payload", "load_dependent_friction", "quadratic_drag"}
@@ -68,3 +71,19 @@ def test_a_true_name_beside_physics_without_one_is_kept(plant, at, arm, names) -
     )
     result = diagnose([both.record(4), both.record(5)], arm, [both.record(6)])
     assert ("quadratic_drag", arm.joints[1]) in names(result)
+
+
+def test_a_cable_that_goes_taut_is_among_the_plain_terms(arm, plant) -> None:
+    """Wherever it goes taut, between the angles that are tried too: three terms leave next to nothing of it."""
+    given = condition([plant().record(1)])
+    problem, own = pose_problem(arm, given, given), 1
+    terms = strangers._terms(problem, problem.fit, own)
+    angle = np.concatenate([p.q[:, own] for p in problem.fit])
+    tight, hard = np.quantile(angle, [0.56, 0.83])
+    pull = [np.maximum(p.q[:, own] - tight, 0.0) + 3.0 * np.maximum(p.q[:, own] - hard, 0.0) for p in problem.fit]
+    wanted = np.concatenate(
+        [problem.reduce(p, x[:, None])[:, 0] * p.counts[:, own] for p, x in zip(problem.fit, pull, strict=True)]
+    )
+    chosen = terms[:, strangers._chosen(np.zeros((len(wanted), 0)), terms, wanted, 3)]
+    rest = wanted - chosen @ np.linalg.lstsq(chosen, wanted, rcond=None)[0]
+    assert np.sum(rest**2) < 0.01 * np.sum(wanted**2)
