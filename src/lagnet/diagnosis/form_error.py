@@ -20,6 +20,7 @@ from lagnet.diagnosis.normal_equations import inverse, normal
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.refit import Refit, Tangent, blocks_of, tangent_at
 from lagnet.diagnosis.spells import set_aside, too_much
+from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import EDGES, NamedEffect
 from lagnet.recordings.smoothing import low_pass
 
@@ -41,13 +42,20 @@ def with_form_error(inquiry: Inquiry) -> Inquiry:
     masked = set_aside(inquiry.problem, inquiry.spells)
     problem = inquiry.problem if too_much(inquiry.problem, masked) else masked
     power = np.maximum(inquiry.found.fit.sse, inquiry.found.scales.noise_power)
-    errors = form_errors(problem, effects, np.sqrt(power / inquiry.bench.samples))
+    found = form_errors(problem, effects, np.sqrt(power / inquiry.bench.samples))
+    errors = [_with_convention(*pair) for pair in zip(effects, found, strict=True)]
     old = (*inquiry.refit.intervals, *(p.intervals for p in inquiry.passing))
     wide = [widened(*pair) for pair in zip(old, errors, strict=True)]
     n = len(inquiry.refit.effects)
     refit = Refit(inquiry.refit.effects, tuple(wide[:n]), inquiry.refit.correlations)
     passing = tuple(replace(p, intervals=w) for p, w in zip(inquiry.passing, wide[n:], strict=True))
     return replace(inquiry, refit=refit, passing=passing)
+
+
+def _with_convention(effect: NamedEffect, errors: dict[str, float]) -> dict[str, float]:
+    """The errors, and what the meaning of a parameter leaves open whatever the recordings say."""
+    open_by = effect_named(effect.effect).by_convention
+    return {name: float(np.hypot(error, open_by.get(name, 0.0))) for name, error in errors.items()}
 
 
 def form_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> list[dict[str, float]]:

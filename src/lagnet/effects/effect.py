@@ -64,6 +64,7 @@ class Effect(ABC):
     passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
     hears_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
     plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it
+    by_convention: ClassVar[Mapping[str, float]] = {}  # half-widths that a parameter's meaning leaves open, SI units
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
 
     @abstractmethod

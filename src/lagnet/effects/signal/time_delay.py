@@ -1,7 +1,7 @@
 """Time delay: torque recorded later than the motion it belongs to."""
 
 from collections.abc import Mapping
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -21,6 +21,7 @@ class TimeDelay(Effect):
     title = "Time delay of the torque"
     formula = "τ(t − T) − τ(t)"
     parameters = (Parameter("T", "T", "s", "time by which torque lags motion", lower=-0.03, upper=0.25),)
+    by_convention: ClassVar[Mapping[str, float]] = {"T": CLOCK}
     stage = "signal"
     instantaneous = False
     shown_by = "fast motion with quick changes of torque"
