@@ -10,6 +10,7 @@ from lagnet.reports.page import Section, section
 from lagnet.reports.wording import counted, effect_words, listed, percent, unit_words, with_interval
 
 SHOWN_PARAMETERS = 4  # of one effect in one line; the table of parameters holds all
+TRIFLE = 1e-4  # of the torque's variance: what the page writes as "< 0.01 %"
 
 
 def build(findings: Findings) -> Section:
@@ -97,7 +98,7 @@ def _tiles(findings: Findings) -> list[dict[str, str]]:
     ]
     remainder = _remainder(findings)
     if not remainder:
-        return [*tiles, _tile("0", "joints keep something unexplained")]
+        return [*tiles, _tile("0", "joints keep more than 0.01 % of their torque unexplained")]
     most = max(remainder, key=lambda r: r["share_of_mismatch"] * findings.fit(r["joint"])["nmse_nominal"])
     rest = f", the most of {counted(len(remainder), 'joint')}" if len(remainder) > 1 else ""
     return [
@@ -162,6 +163,11 @@ def _values(effect: dict[str, Any]) -> list[str]:
 
 
 def _remainder(findings: Findings) -> list[dict[str, Any]]:
-    """What is left above the noise, the largest share first."""
-    left = [entry for entry in findings.verdict["unexplained"] if entry["above_noise"]]
+    """What is left above the noise and is no trifle, the largest share first; the table further down holds all."""
+    left = [entry for entry in findings.verdict["unexplained"] if entry["above_noise"] and _matters(findings, entry)]
     return sorted(left, key=lambda entry: -entry["share_of_mismatch"])
+
+
+def _matters(findings: Findings, entry: dict[str, Any]) -> bool:
+    """Whether the rest is more of the torque than the page tells from nothing."""
+    return entry["share_of_mismatch"] * findings.fit(entry["joint"])["nmse_nominal"] >= TRIFLE
