@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 from tests.models.term_by_term import GravityInResidual, WithoutCoriolis, failures
 
+from lagnet.effects.catalogue import effect_named
 from lagnet.errors import ModelError
 from lagnet.models import euler_lagrange
+from lagnet.models.corrected import CorrectedModel, NamedEffect
 from lagnet.models.learned_model import LearnedModel
 from lagnet.models.loading import load_any
 from lagnet.models.serial_chain.fit import fit_serial_chain
@@ -219,6 +221,34 @@ def test_regressor_times_parameters_is_torque(robot: Robot, learned: tuple) -> N
     np.testing.assert_allclose(
         model.gravity_regressor(q) @ model.gravity, model.gravity_torque(q), rtol=1e-8, atol=1e-9
     )
+
+
+def test_mounted_otherwise_only_its_weight_differs(robot: Robot, learned: tuple) -> None:
+    model, motion = learned[0], _motion(robot, 7, 6)
+    gravity = model.gravity[[1, 2, 0]] + 0.5
+    other = model.with_gravity(gravity)
+    weight = model.gravity_regressor(motion[0]) @ (gravity - model.gravity)
+    np.testing.assert_allclose(
+        other.inverse_dynamics(*motion), model.inverse_dynamics(*motion) + weight, rtol=1e-8, atol=1e-9
+    )
+    columns = other.joint_torque_regressor(*motion)
+    np.testing.assert_allclose(
+        columns @ other.inertial_parameters.ravel(), other.inverse_dynamics(*motion), rtol=1e-8, atol=1e-9
+    )
+    with pytest.raises(ValueError, match=r"expected \(3,\)"):
+        model.with_gravity(np.zeros(2))
+
+
+def test_tilt_and_payload_together_are_the_loaded_arm_mounted_otherwise(robot: Robot, learned: tuple) -> None:
+    """A log of the simulator is all there is: its arm has no file to write bodies and gravity into."""
+    model, motion = learned[0], _motion(robot, 7, 6)
+    tilt, body = {"theta_1": 0.2, "theta_2": -0.1}, {"m": 1.5, "cx": 0.02, "cy": -0.03, "cz": 0.08}
+    body |= {"Ixx": 0.02, "Iyy": 0.02, "Izz": 0.02, "Ixy": 0.0, "Ixz": 0.0, "Iyz": 0.0}
+    named = (NamedEffect("gravity_tilt", None, tilt), NamedEffect("payload", None, body))
+    found = CorrectedModel(model, named, np.full(3, 0.02)).inverse_dynamics(*motion)
+    mounted = model.with_gravity(effect_named("gravity_tilt").gravity_of(model.gravity, tilt))
+    load = mounted.link_regressor(-1, *motion) @ effect_named("payload").coordinates(body)
+    np.testing.assert_allclose(found, mounted.inverse_dynamics(*motion) + load, rtol=1e-8, atol=1e-8)
 
 
 def test_saved_and_read_back_it_is_the_same(robot: Robot, learned: tuple, tmp_path) -> None:

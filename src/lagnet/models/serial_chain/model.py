@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import final
 
@@ -25,6 +26,7 @@ from lagnet.models.scales import fit_scales
 from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.models.serial_chain.fit import SerialChainFit, fit_serial_chain
 from lagnet.models.serial_chain.inertia import regressor_to_standard, to_standard
+from lagnet.models.serial_chain.kinematics import Geometry
 from lagnet.models.serial_chain.newton_euler import SerialArm, moment_regressor
 from lagnet.models.serial_chain.settings import SerialChainSettings
 from lagnet.types import MassMatrix, Trajectory
@@ -48,7 +50,6 @@ class SerialChain:
             raise ModelError(f"a model of kind {learned.model_kind} is not a serial chain")
         self.learned, self.dynamics = learned, learned.dynamics
         self.kind, self.source, self.sha256 = learned.kind, learned.source, learned.sha256
-        self._regressor = jax.jit(self._batch_regressor)
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -130,7 +131,8 @@ class SerialChain:
         """Torque per unit of each inertial parameter at the shape found, shape (n, dof, 10 dof)."""
         given = [np.asarray(x, dtype=float) for x in (q, v, a)]
         with jax.enable_x64(True):
-            parts = [np.asarray(self._regressor(*rows)) for rows in _pieces(given)]
+            arm = self.dynamics.lagrangian
+            parts = [np.asarray(_regressors(arm.geometry, arm.revolute, *rows)) for rows in _pieces(given)]
         columns = np.concatenate(parts)[: len(given[0])]
         shaped = columns.reshape(*columns.shape[:2], self.n_dof, 10)
         return regressor_to_standard(shaped).reshape(columns.shape)
@@ -142,22 +144,20 @@ class SerialChain:
 
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """Torque per unit of gravity along the axes of the model's base frame, shape (n, dof, 3) [N m s²/m]."""
-        arm = self.dynamics.lagrangian
+        return np.stack([self.with_gravity(axis).gravity_torque(q) for axis in np.eye(3)], axis=-1)
 
-        def weight(gravity: np.ndarray) -> np.ndarray:
-            pulled = eqx.tree_at(lambda d: d.lagrangian.geometry.gravity, self.dynamics, jnp.asarray(gravity))
-            return LearnedModel(self.learned.spec, pulled).gravity_torque(q)
-
+    def with_gravity(self, gravity: np.ndarray) -> SerialChain:
+        """The same arm mounted otherwise; gravity of shape (3,) in the model's base frame [m/s²]."""
+        gravity = np.asarray(gravity, dtype=np.asarray(self.dynamics.lagrangian.moments).dtype)
+        if gravity.shape != (3,):
+            raise ValueError(f"gravity has shape {gravity.shape}, expected (3,)")
         with jax.enable_x64(True):
-            return np.stack([weight(axis) for axis in np.eye(3, dtype=np.asarray(arm.moments).dtype)], axis=-1)
+            pulled = eqx.tree_at(lambda d: d.lagrangian.geometry.gravity, self.dynamics, jnp.asarray(gravity))
+        return SerialChain(LearnedModel(self.learned.spec, pulled, self.learned.training))
 
     def save(self, folder: str | Path) -> Path:
         """Write the model to a folder, without pickle; see `lagnet.models.saving`."""
         return self.learned.save(folder)
-
-    def _batch_regressor(self, q, v, a):
-        arm = self.dynamics.lagrangian
-        return jax.vmap(lambda *s: moment_regressor(arm.geometry, arm.revolute, *s))(q, v, a)
 
 
 def learn_serial_chain(
@@ -191,6 +191,12 @@ def load_serial_chain(folder: str | Path, n_dof: int | None = None) -> SerialCha
         ModelError: no model there, damaged, from a newer format, for another number of joints, or of another kind.
     """
     return SerialChain(load_model(folder, n_dof))
+
+
+@partial(jax.jit, static_argnums=1)
+def _regressors(geometry: Geometry, revolute: tuple[bool, ...], q: Trajectory, v: Trajectory, a: Trajectory):
+    """Regressors of a batch; compiled once for arms of the same joints, whatever their shape and gravity."""
+    return jax.vmap(lambda *s: moment_regressor(geometry, revolute, *s))(q, v, a)
 
 
 def _dynamics(found: SerialChainFit) -> SerialChainDynamics:
