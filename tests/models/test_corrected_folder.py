@@ -32,7 +32,8 @@ EFFECTS = (
 @pytest.fixture
 def model():
     arm, left = random_arm(3, seed=5, kinds=("revolute",)), np.array([0.1, 0.0, 0.2])
-    return CorrectedModel(arm, EFFECTS, np.array([0.01, 0.02, 0.03]), left=left)
+    straight = np.array([True, False, True])
+    return CorrectedModel(arm, EFFECTS, np.array([0.01, 0.02, 0.03]), straight=straight, left=left)
 
 
 @pytest.fixture
@@ -57,6 +58,7 @@ def test_a_model_read_back_is_the_same_model(model, folder) -> None:
     assert (back.kind, back.source) == ("corrected", str(folder))
     assert len(back.sha256) == 64
     np.testing.assert_array_equal(back.left, model.left)
+    np.testing.assert_array_equal(back.straight, model.straight)
     q, v, a = samples()
     np.testing.assert_allclose(back.inverse_dynamics(q, v, a), model.inverse_dynamics(q, v, a), rtol=EXACT, atol=EXACT)
     np.testing.assert_allclose(back.mass_matrix(q), model.mass_matrix(q), rtol=EXACT, atol=EXACT)

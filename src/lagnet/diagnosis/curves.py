@@ -101,7 +101,9 @@ def _law(inquiry: Inquiry, joint: int) -> FrictionLaw | None:
     rest = np.zeros((CURVE, problem.n_dof))
     speeds = rest.copy()
     speeds[:, joint] = v
-    motion = Motion(np.arange(CURVE) * 1e-2, rest, speeds, rest, rest, problem.slow, problem.nominal)
+    motion = Motion(
+        np.arange(CURVE) * 1e-2, rest, speeds, rest, rest, problem.slow, problem.nominal, straight=problem.straight
+    )
     torque = sum((effect_named(e.effect).torque(motion, joint, e.values) for e in own), np.zeros(CURVE))
     return FrictionLaw(tuple(e.effect for e in own), v, torque)
 

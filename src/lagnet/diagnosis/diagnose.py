@@ -105,7 +105,8 @@ def diagnose(
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     inquiry = with_form_error(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
     seen = inquiry.problem
-    corrected = CorrectedModel(robot, inquiry.effects, seen.slow, seen.held, left=missed_by(inquiry))
+    told = (seen.slow, seen.held, seen.straight)
+    corrected = CorrectedModel(robot, inquiry.effects, *told, left=missed_by(inquiry))
     verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
     return Diagnosis(verdict, corrected, evidence, fit_on, held, inquiry.holdout, ends_of, inquiry.standing)
 

@@ -152,4 +152,4 @@ def _head(motion: Motion, n: int = 40) -> Motion:
     rows = slice(0, n)
     time = np.arange(motion.time[rows].size, dtype=float) * 0.01
     q, v, a, load = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
-    return Motion(time, q, v, a, load, motion.slow, motion.model)
+    return Motion(time, q, v, a, load, motion.slow, motion.model, straight=motion.straight)

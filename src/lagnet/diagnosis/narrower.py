@@ -62,7 +62,7 @@ def _error(inquiry: Inquiry, judge: Inquiry, spells: Sequence[Spell]) -> float:
     Intervals in which something acts that no inquiry has a name for count for none.
     """
     clean = set_aside(judge.problem, spells)
-    problem = replace(clean, slow=inquiry.problem.slow, held=inquiry.problem.held)
+    problem = replace(clean, slow=inquiry.problem.slow, straight=inquiry.problem.straight, held=inquiry.problem.held)
     rest, counts = [], []
     for piece in problem.holdout:
         motion = replace(piece.motion(problem), recorded=None)

@@ -47,7 +47,7 @@ class Standing:
     def corrected(self) -> CorrectedModel:
         """The nominal model with the named effects."""
         problem = self.problem
-        return CorrectedModel(problem.nominal, self.effects, problem.slow, problem.held)
+        return CorrectedModel(problem.nominal, self.effects, problem.slow, problem.held, straight=problem.straight)
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class Prospect:
         conditioned = replace(self._standing.fit, stretches=(stretch,), rate=self.rate)
         posed = pose_problem(self._standing.problem.nominal, conditioned, conditioned)
         told = self._standing.problem
-        return replace(posed, slow=told.slow, known=told.known)
+        return replace(posed, slow=told.slow, straight=told.straight, known=told.known)
 
     def _tables(self, posed: Problem, piece: Piece) -> list[np.ndarray]:
         tables = self._bench.library.tables(posed, piece)
@@ -135,4 +135,4 @@ class Prospect:
         time, q, v, a, load = (
             np.concatenate([getattr(old, name), getattr(new, name)]) for name in ("time", "q", "v", "a", "load")
         )
-        return Motion(time, q, v, a, load, old.slow, old.model)
+        return Motion(time, q, v, a, load, old.slow, old.model, straight=old.straight)

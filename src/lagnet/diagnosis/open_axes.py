@@ -126,4 +126,4 @@ def _samples(problem: Problem, pieces: tuple[Piece, ...]) -> Motion:
     rows = np.unique(np.linspace(0, len(seen.q) - 1, SAMPLES).round().astype(int))
     assert seen.recorded is not None
     time, q, v, a, load = (x[rows] for x in (seen.time, seen.q, seen.v, seen.a, seen.load))
-    return Motion(time, q, v, a, load, seen.slow, seen.model, seen.recorded[rows])
+    return Motion(time, q, v, a, load, seen.slow, seen.model, seen.recorded[rows], straight=seen.straight)

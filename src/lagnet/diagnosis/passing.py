@@ -66,7 +66,7 @@ def settle_passing(inquiry: Inquiry, again: Callable[[Problem], Inquiry]) -> Inq
         masked = set_aside(problem, spells)
         if too_much(problem, masked):
             return replace(inquiry, spells=spells)
-        clean = again(sharpen(replace(masked, slow=blurred_speed(inquiry.fit), held=None)))
+        clean = again(sharpen(replace(masked, slow=blurred_speed(inquiry.fit), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = find_spells(whole, clean.refit.effects, inquiry.noise)
         slack = SMEAR / problem.bandwidth

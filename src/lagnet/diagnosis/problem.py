@@ -47,7 +47,7 @@ class Piece:
         """The piece as the effects see it."""
         recorded = low_pass(self.tau, problem.rate, problem.bandwidth)
         seen = (self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal)
-        return Motion(*seen, recorded, problem.held, self.origin)
+        return Motion(*seen, recorded, problem.held, self.origin, problem.straight)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Problem:
         nominal: the model that is held against the recordings.
         fit, holdout: pieces; the second are never used to fit.
         rate, bandwidth: [Hz].
-        slow: shape (dof,), blurred speed of each joint.
+        slow: shape (dof,), blurred speed of each joint; straight: whether dry friction rises in a line up to it.
         joints: names.
         scale: shape (dof,), standard deviation of the recorded torque [N m].
         held: shape (dof,), share of the dry friction that stays at rest; None while it is not known.
@@ -77,6 +77,7 @@ class Problem:
     held: np.ndarray | None = None
     missed: np.ndarray | None = None
     known: tuple[NamedEffect, ...] = ()
+    straight: np.ndarray | None = None
 
     @property
     def n_dof(self) -> int:
@@ -102,7 +103,7 @@ class Problem:
             np.concatenate([getattr(p, n)[r] for p, r in pairs]) for n in ("time", "q", "v", "a", "load")
         )
         recorded = np.concatenate([low_pass(p.tau, self.rate, self.bandwidth)[r] for p, r in pairs])
-        return Motion(time, q, v, a, load, self.slow, self.nominal, recorded)
+        return Motion(time, q, v, a, load, self.slow, self.nominal, recorded, straight=self.straight)
 
 
 def pose_problem(

@@ -42,7 +42,8 @@ def _left(problem: Problem, library: Library, found: Found) -> tuple[Motion, np.
     time, q, v, a, load = (
         np.concatenate([getattr(p, name)[p.keep] for p in pieces]) for name in ("time", "q", "v", "a", "load")
     )
-    return Motion(time, q, v, a, load, problem.slow, problem.nominal), np.concatenate(rests)
+    motion = Motion(time, q, v, a, load, problem.slow, problem.nominal, straight=problem.straight)
+    return motion, np.concatenate(rests)
 
 
 def _chosen(library: Library, found: Found) -> Library:

@@ -52,6 +52,8 @@ def strands_of(problem: Problem, pieces: Sequence[Piece], effects: Sequence[Name
 def _joined(problem: Problem, index: int, found: list[tuple[Piece, np.ndarray]]) -> Strand:
     names = ("time", "q", "v", "a", "load")
     time, q, v, a, load = (np.concatenate([getattr(p, n)[p.keep] for p, _ in found]) for n in names)
-    motion = Motion(time, q, v, a, load, problem.slow, problem.nominal, recording=found[0][0].origin)
+    motion = Motion(
+        time, q, v, a, load, problem.slow, problem.nominal, None, None, found[0][0].origin, problem.straight
+    )
     counts = np.concatenate([p.counts for p, _ in found])
     return Strand(motion, np.concatenate([r for _, r in found]), counts, index)

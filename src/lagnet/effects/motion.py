@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.effects.rest import held_direction
+from lagnet.effects.rest import blurred_sign, held_direction
 from lagnet.types import InverseDynamics, JointVector, Samples, Trajectory
 
 
@@ -19,11 +19,12 @@ class Motion:
         time: shape (n,), [s].
         q, v, a: shape (n, dof), smoothed joint motion [rad, rad/s, rad/s²].
         load: shape (n, dof), torque that the model with all effects so far gives [N m].
-        slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v) = tanh(v/ε).
+        slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v).
         model: the nominal model, for effects that change bodies or gravity.
         recorded: shape (n, dof), recorded torque, low-passed [N m]; None where there is no recording.
         held: shape (dof,), share of the dry friction that stays while a joint rests; None: none, or no order.
         recording: which of the recordings under diagnosis it is a part of; None: none of them.
+        straight: shape (dof,), whether s(v) rises in a straight line to ±1 instead of along tanh; None: nowhere.
         cache: shared store of regressors that several effects need.
     """
 
@@ -37,6 +38,7 @@ class Motion:
     recorded: Trajectory | None = None
     held: JointVector | None = None
     recording: int | None = None
+    straight: np.ndarray | None = None
     cache: dict = field(default_factory=dict, repr=False)
 
     @property
@@ -45,8 +47,9 @@ class Motion:
         return self.q.shape[1]
 
     def direction(self, joint: int) -> np.ndarray:
-        """s(v) = tanh(v / ε) of one joint, shape (n,): the sign of the velocity, smooth through zero."""
-        direction = np.tanh(self.v[:, joint] / self.slow[joint])
+        """s(v) of one joint, shape (n,): the sign of the velocity, without a jump at zero."""
+        straight = self.straight is not None and bool(self.straight[joint])
+        direction = blurred_sign(self.v[:, joint], self.slow[joint], straight)
         if self.held is None or not self.held[joint] > 0:
             return direction
         return held_direction(self.time, self.v[:, joint], self.slow[joint], direction, self.held[joint])

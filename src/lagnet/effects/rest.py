@@ -1,10 +1,21 @@
-"""What dry friction does while a joint rests: it keeps part of the torque at which the joint came to stop."""
+"""What dry friction does while a joint rests or turns round: how its sign changes, and what it keeps at a stop."""
 
 from __future__ import annotations
 
 import numpy as np
 
 SHORTEST = 0.1  # [s] below which a slow passage through zero is no rest
+
+
+def blurred_sign(v: np.ndarray, slow: float, straight: bool = False) -> np.ndarray:
+    """s(v): tanh(v/ε), or v/ε cut at ±1, which is what a simulator with regularised dry contact computes.
+
+    Args:
+        v: [rad/s].
+        slow: ε [rad/s].
+        straight: the second form.
+    """
+    return np.clip(v / slow, -1.0, 1.0) if straight else np.tanh(v / slow)
 
 
 def held_direction(time: np.ndarray, v: np.ndarray, slow: float, direction: np.ndarray, share: float) -> np.ndarray:

@@ -121,8 +121,9 @@ class CorrectedModel:
     Args:
         nominal: the model that was diagnosed.
         effects: what it lacks.
-        slow: shape (dof,), blurred speed ε of s(v) = tanh(v/ε) [rad/s].
+        slow: shape (dof,), blurred speed ε of s(v) [rad/s].
         held: shape (dof,), share of the dry friction that stays while a joint rests; None: none.
+        straight: shape (dof,), whether s(v) rises in a straight line to ±1 instead of along tanh; None: nowhere.
         source: folder it was read from, "" if none.
         sha256: checksum of what it was read from.
         recording: index of the fitted recording whose motion it is asked for; None: any other motion, where nothing
@@ -134,6 +135,7 @@ class CorrectedModel:
     effects: tuple[NamedEffect, ...]
     slow: JointVector
     held: JointVector | None = None
+    straight: np.ndarray | None = None
     source: str = ""
     sha256: str = ""
     recording: int | None = None
@@ -243,7 +245,8 @@ class CorrectedModel:
         return torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
 
     def _motion(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory, load: Trajectory) -> Motion:
-        return Motion(time, q, v, a, load, self.slow, self.nominal, recording=self.recording)
+        seen = (time, q, v, a, load, self.slow, self.nominal)
+        return Motion(*seen, recording=self.recording, straight=self.straight)
 
 
 def torque_along(model: Any, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:

@@ -37,6 +37,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "slow": [float(s) for s in model.slow],
         "held": _as_list(model.held),
         "left": _as_list(model.left),
+        "straight": None if model.straight is None else [bool(x) for x in model.straight],
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
             | ({} if e.recording is None else {"recording": e.recording})
@@ -95,16 +96,20 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> Corre
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
-        held, left = (_as_row(text.get(name)) for name in ("held", "left"))
+        held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
     seen = file if file.is_file() else file / FILE
     if expected and (not seen.is_file() or _checksum(seen) != expected):
         raise ModelError("the nominal model beside it was changed or is missing", where=str(seen))
     nominal = load_any(file)
-    if tuple(nominal.joints) != joints or any(len(x) != len(joints) for x in (slow, held, left) if x is not None):
+    if tuple(nominal.joints) != joints or any(
+        len(x) != len(joints) for x in (slow, held, left, straight) if x is not None
+    ):
         raise ModelError("its joints are not those of its nominal model", where=str(where))
-    return CorrectedModel(nominal, effects, slow, held, source=str(folder), sha256=_checksum(where), left=left)
+    straight = None if straight is None else straight.astype(bool)
+    of_file = {"source": str(folder), "sha256": _checksum(where)}
+    return CorrectedModel(nominal, effects, slow, held, straight, left=left, **of_file)
 
 
 def _as_list(row: np.ndarray | None) -> list[float] | None:
