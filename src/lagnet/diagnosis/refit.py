@@ -21,7 +21,6 @@ STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's 
 DONE = 1e-6  # relative change of the error at which the steps end
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on pieces spread over them
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
-BODIES = 2  # rounds over the bodies: making one consistent moves the others
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 
 
@@ -109,8 +108,7 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -
     work, start = _start(problem, effects, sigma)
     slots = work.slots
     x = work.descend(np.clip(start, *slots.bounds()), np.ones(start.size, dtype=bool))
-    for _ in range(BODIES):
-        x = _make_consistent(work, x)
+    x = _made_consistent(work, x)
     covariance, freedom = work.covariance(x)
     return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), correlations_of(covariance))
 
@@ -197,24 +195,43 @@ class _Work:
         return robust * widest[:, None] * widest[None, :], freedom
 
 
-def _make_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
-    """Replaces bodies that no mass can have by the nearest that one can, and refits the rest around them."""
-    for n, effect in enumerate(work.slots.effects):
-        if effect.effect not in ("payload", "link_inertia"):
-            continue
-        own = np.arange(x.size)[work.slots.of(n)][:BODY]
-        base = body_before(work.problem, effect)
-        if is_physically_consistent(base + x[own]):
-            continue
-        gram, _ = normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
-        rest = np.setdiff1d(np.arange(x.size), own)
-        cross = gram[np.ix_(own, rest)]
-        schur = gram[np.ix_(own, own)] - (cross @ inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
-        schur = 0.5 * (schur + schur.T)
+def _made_consistent(work: _Work, x: np.ndarray) -> np.ndarray:
+    """Replaces bodies that no mass can have by the nearest that one can, and refits the rest around them.
+
+    Making one body consistent moves the others, so each is given a second chance; from then on it is held.
+    """
+    tried, held = set[int](), np.zeros(x.size, dtype=bool)
+    while (n := _impossible_body(work, x)) is not None:
+        own = _own(work, x, n)
         x = x.copy()
-        x[own] = nearest_body(schur, base + x[own], base) - base
-        x = work.descend(x, np.isin(np.arange(x.size), rest))
+        x[own] = _nearest(work, x, n)
+        held[own] = n in tried
+        tried.add(n)
+        x = work.descend(x, ~(held | np.isin(np.arange(x.size), own)))
     return x
+
+
+def _impossible_body(work: _Work, x: np.ndarray) -> int | None:
+    """The first effect whose body no mass can have."""
+    for n, effect in enumerate(work.slots.effects):
+        is_body = effect.effect in ("payload", "link_inertia")
+        if is_body and not is_physically_consistent(body_before(work.problem, effect) + x[_own(work, x, n)]):
+            return n
+    return None
+
+
+def _own(work: _Work, x: np.ndarray, n: int) -> np.ndarray:
+    return np.arange(x.size)[work.slots.of(n)][:BODY]
+
+
+def _nearest(work: _Work, x: np.ndarray, n: int) -> np.ndarray:
+    """Coordinates of the nearest body that some mass has, all else being refitted around it."""
+    own, base = _own(work, x, n), body_before(work.problem, work.slots.effects[n])
+    gram, _ = normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
+    rest = np.setdiff1d(np.arange(x.size), own)
+    cross = gram[np.ix_(own, rest)]
+    schur = gram[np.ix_(own, own)] - (cross @ inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
+    return nearest_body(0.5 * (schur + schur.T), base + x[own], base) - base
 
 
 def _intervals(
