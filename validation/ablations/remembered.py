@@ -39,8 +39,8 @@ def _sharpen(old: Callable) -> Callable:
     def sharpen(problem: Problem) -> Problem:
         key = _told(problem, problem.fit)
         if key not in known:
-            known[key] = old(problem).slow
-        return replace(problem, slow=known[key])
+            known[key] = old(problem)
+        return replace(problem, slow=known[key].slow, straight=known[key].straight)
 
     return sharpen
 
@@ -48,7 +48,7 @@ def _sharpen(old: Callable) -> Callable:
 def _told(problem: Problem, pieces: Sequence[Piece]) -> str:
     """All that columns and residuals are made of, as a hash."""
     digest = hashlib.sha256(repr((problem.rate, problem.bandwidth, problem.joints)).encode())
-    arrays = [problem.slow, problem.scale, *([] if problem.held is None else [problem.held])]
+    arrays = [problem.slow, problem.scale, *(x for x in (problem.held, problem.straight) if x is not None)]
     for p in pieces:
         arrays += [p.time, p.q, p.v, p.a, p.tau, p.load, p.keep, p.counts]
     for array in arrays:

@@ -184,7 +184,7 @@ SINGLE = (
         "parameters stay as the search found them, on its grid of shapes",
         {
             "lagnet.diagnosis.refit:_Work.descend": lambda old: lambda work, x, free: x,
-            "lagnet.diagnosis.refit:_make_consistent": lambda old: lambda work, x: x,
+            "lagnet.diagnosis.refit:_made_consistent": lambda old: lambda work, x: x,
         },
     ),
 )
