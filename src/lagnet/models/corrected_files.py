@@ -108,8 +108,8 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> Corre
     ):
         raise ModelError("its joints are not those of its nominal model", where=str(where))
     straight = None if straight is None else straight.astype(bool)
-    of_file = {"source": str(folder), "sha256": _checksum(where)}
-    return CorrectedModel(nominal, effects, slow, held, straight, left=left, **of_file)
+    of_file = (str(folder), _checksum(where))
+    return CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left)
 
 
 def _as_list(row: np.ndarray | None) -> list[float] | None:
