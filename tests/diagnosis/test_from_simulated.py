@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lagnet.diagnosis import from_simulated
 from lagnet.diagnosis.diagnose import diagnose
-from lagnet.diagnosis.from_simulated import LearnedNominal, learn_nominal
+from lagnet.diagnosis.from_simulated import MOVING, TERMS, LearnedNominal, learn_nominal
 from lagnet.models.serial_chain.model import SerialChain
+from lagnet.models.serial_chain.settings import SerialChainSettings
 from lagnet.rigid_body.random_arm import random_arm
 
 VISCOUS, DRY, ROTOR = 0.8, 2.0, 0.3  # [N m s/rad], [N m], [kg m²]
@@ -56,3 +58,20 @@ def test_joints_without_friction_are_links_alone(logs) -> None:
     assert not learned.model.dynamics.joint_terms
     assert not learned.model.dynamics.lagrangian.rotor_inertia.any()
     assert np.max(learned.share) < 1e-4
+
+
+class Asked(Exception):
+    """What a chain would be learned from."""
+
+
+@pytest.mark.parametrize(("terms", "slow_too"), [((), True), (TERMS, False)], ids=["links", "joints"])
+def test_links_are_learned_from_slow_samples_too(logs, monkeypatch, terms, slow_too) -> None:
+    """Slow samples tell links best, and lie where dry friction turns."""
+
+    def asked(q, v, *others):
+        raise Asked(np.min(np.abs(v) / np.sqrt(np.mean(v**2, axis=0))))
+
+    monkeypatch.setattr("lagnet.models.serial_chain.model.learn_serial_chain", asked)
+    with pytest.raises(Asked) as told:
+        from_simulated._chain(logs(), None, 0, SerialChainSettings(joint_terms=terms))
+    assert (told.value.args[0] < 0.5 * MOVING) == slow_too

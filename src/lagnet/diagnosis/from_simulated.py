@@ -81,24 +81,31 @@ def _best_chain(
 def _chain(
     seen: Sequence[Recording], joint_types: tuple[str, ...] | None, seed: int, settings: SerialChainSettings
 ) -> Any:
-    """A serial chain from samples spread over the recordings: its search pays for every sample, and needs few."""
+    """A serial chain from samples spread over the recordings: its search pays for every sample, and needs few.
+
+    Slow samples tell links best, being little differentiated, but lie where dry friction turns.
+    """
     from lagnet.models.features import guess_joint_types
     from lagnet.models.serial_chain.model import learn_serial_chain
     from lagnet.models.serial_chain.reversals import sharpen_reversals
     from lagnet.training.samples import samples_of
 
     samples = samples_of(seen)
-    rows = _spread(samples.v)
+    rows = _spread(_moving(samples.v) if settings.joint_terms else np.arange(len(samples)))
     q, v, a, tau = (x[rows] for x in (samples.q, samples.v, samples.a, samples.tau))
     types = joint_types or guess_joint_types(samples.q)
     chain = learn_serial_chain(q, v, a, tau, samples.joints, types, seed, settings)[0]
     return sharpen_reversals(chain, samples.q, samples.v, samples.a, samples.tau)
 
 
-def _spread(v: np.ndarray) -> np.ndarray:
-    """Rows spread over the samples at which every joint moves; over all of them where such are too few."""
-    moving = np.flatnonzero(np.all(np.abs(v) > MOVING * np.sqrt(np.mean(v**2, axis=0)), axis=1))
-    rows = moving if moving.size >= MOST_SAMPLES // 2 else np.arange(len(v))
+def _moving(v: np.ndarray) -> np.ndarray:
+    """Rows at which every joint moves; all where such are too few."""
+    rows = np.flatnonzero(np.all(np.abs(v) > MOVING * np.sqrt(np.mean(v**2, axis=0)), axis=1))
+    return rows if rows.size >= MOST_SAMPLES // 2 else np.arange(len(v))
+
+
+def _spread(rows: np.ndarray) -> np.ndarray:
+    """At most so many of the rows, from all over them."""
     return rows[np.unique(np.linspace(0, rows.size - 1, MOST_SAMPLES).round().astype(int))]
 
 
