@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from lagnet.cli.robots import HELP, load_models
 from lagnet.errors import LagnetError
 
 
@@ -22,6 +23,7 @@ def command(
     recording: Annotated[
         list[Path] | None, typer.Option(help="What the robot did: sets the range of motion, and is held to the limits.")
     ] = None,
+    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
@@ -36,14 +38,13 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Hold a model or robot against physics; exit code 1 when a check fails."""
-    from lagnet.models.loading import load_any
     from lagnet.plausibility.settings import CheckSettings
     from lagnet.plausibility.suite import check
     from lagnet.recordings.load import load_recording
 
     settings = CheckSettings(limits=_limits(limit or []), skip=tuple(skip or ()), vertical_base=vertical_base)
-    loaded = load_any(model)
-    believed = load_any(reference) if reference else None
+    loaded, *rest = load_models([model, reference] if reference else [model], hold)
+    believed = rest[0] if rest else None
     # Degrees passed as radians are what the checks are asked to find: the reader must not refuse them here.
     recordings = [load_recording(path, joints=loaded.joints, columns=columns) for path in recording or []]
     report = check(loaded, believed, recordings, seed=seed, settings=settings)

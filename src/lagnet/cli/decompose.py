@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from lagnet.cli.robots import HELP, load_models
+
 
 def command(
     model: Annotated[
@@ -19,6 +21,7 @@ def command(
     member: Annotated[
         list[str] | None, typer.Option(help="Further model of an ensemble, whose spread becomes a band; repeatable.")
     ] = None,
+    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
@@ -32,13 +35,13 @@ def command(
     from lagnet.cli.console import say
     from lagnet.decomposition.decompose import decompose
     from lagnet.decomposition.writing import write_decomposition
-    from lagnet.models.loading import load_any
     from lagnet.recordings.load import load_recording
     from lagnet.reports.decomposition_report import write_decomposition_report
 
     constants = [float(x) for x in torque_constant.split(",")] if torque_constant else None
-    models = [load_any(spec) for spec in (model, *(member or []))]
-    believed = load_any(reference) if reference else None
+    specs = [model, *(member or [])]
+    loaded = load_models([*specs, reference] if reference else specs, hold)
+    models, believed = loaded[: len(specs)], loaded[-1] if reference else None
     read = [load_recording(p, robot=models[0], columns=columns, torque_constant=constants) for p in recordings]
     parts = decompose(models if member else models[0], read, believed, seed=seed)
     write_decomposition(parts, out)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.cli.robots import HELP, load_models
 from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ def command(
     holdout: Annotated[
         list[Path] | None, typer.Option(help="Recordings that are not fitted; else the last fifth of each.")
     ] = None,
+    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
@@ -49,18 +51,19 @@ def command(
             "give either --robot or --simulated",
             next_step="--robot takes a URDF, MJCF, name or folder; --simulated takes recordings of the simulator",
         )
+    if simulated and hold:
+        raise LagnetError("--hold holds joints of --robot; a simulator's recordings have those that they have")
     from lagnet.cli.console import numbers, say
     from lagnet.cli.simulated import nominal_from
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.side_by_side import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
-    from lagnet.models.loading import load_any
     from lagnet.recordings.load import load_recording
     from lagnet.reports.diagnosis_report import write_report
 
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
     model, missed, of_simulator = (
-        (load_any(robot), None, []) if robot else nominal_from(simulated or [], columns, constants, seed)
+        (*load_models([robot], hold), None, []) if robot else nominal_from(simulated or [], columns, constants, seed)
     )
     read = [
         [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]

@@ -8,10 +8,13 @@ from typing import Annotated
 
 import typer
 
+from lagnet.cli.robots import HELP, held_joints
+
 
 def command(
     robot: Annotated[str, typer.Option(help="Nominal model: URDF or MJCF path, or a name such as ur5.")],
     out: Annotated[Path, typer.Option(help="New folder to write recordings and truth.json to.")],
+    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
     effects: Annotated[
         Path | None, typer.Option(help='TOML file of effects to add: [[effect]] name="..." joint="..." parameters.')
     ] = None,
@@ -42,7 +45,7 @@ def command(
     from lagnet.simulation.writing import TRUTH, check_free, write_simulation
 
     check_free(out)
-    model = load_description(robot)
+    model = load_description(robot, held_joints(hold))
     injected = read_effects(effects, model) if effects is not None else ()
     settings = SimulationSettings(
         trajectories=trajectories,

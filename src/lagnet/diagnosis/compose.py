@@ -65,8 +65,11 @@ def compose_verdict(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[R
 
 
 def _warnings(inquiry: Inquiry, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    model = inquiry.problem.nominal
+    of_model = [f"{getattr(model, 'source', '')}: {w}" for w in getattr(model, "warnings", ())]
     of_files = dict.fromkeys(w for r in (*fit, *held) for w in r.warnings)
     return (
+        *of_model,
         *of_files,
         *told_in_time(inquiry, fit, held),
         *told_of_clock(inquiry.fit),

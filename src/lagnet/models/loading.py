@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from lagnet.errors import ModelError
 from lagnet.models import corrected_files
+from lagnet.rigid_body.description import NONE_HELD
 
 
-def load_any(spec: str | Path) -> Any:
+def load_any(spec: str | Path, held: Mapping[str, float] = NONE_HELD) -> Any:
     """A Robot, a learned model, an ensemble of them or a corrected model.
 
     Args:
         spec: URDF or MJCF path, name of example-robot-data, or folder written by `train` or `diagnose`.
+        held: joints of a URDF, MJCF or named robot that no recording tells of, e.g. fingers, and where they are held
+            still [rad or m].
 
     Raises:
         RobotError: no such robot, or a description that cannot be read.
-        ModelError: a folder that holds no model, or a damaged one.
+        ModelError: a folder that holds no model, or a damaged one; or joints to hold of a model that has none to spare.
     """
     path = Path(spec)
     if not path.is_dir():
         from lagnet.rigid_body.robot import load_description
 
-        return load_description(spec)
+        return load_description(spec, held)
+    if held:
+        raise ModelError("has the joints that it was made with: none can be held still", where=str(path))
     for folder in (path, path / "corrected", path / "model"):
         if (folder / corrected_files.FILE).is_file():
             return corrected_files.load_corrected(folder, load_any)

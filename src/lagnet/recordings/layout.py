@@ -150,7 +150,8 @@ def _refuse_other_joint_count(header: Header, joints: tuple[str, ...]) -> None:
         raise header.error(
             f"has columns of {count} joint{'s' * (count != 1)} ({_example('q', ('',) * count)}), the robot has"
             f" {len(joints)} ({listed})",
-            "give the recording of this robot, or map the columns of its joints with --columns",
+            "give the recording of this robot, or map the columns of its joints with --columns"
+            + "".join(f"; {_can_be_held(joint)}" for joint in joints[count : count + 1]),
         )
 
 
@@ -221,9 +222,15 @@ def _missing(header: Header, kind: str, lacking: Sequence[str], order: tuple[str
     hint = f"; is {near} meant?" if near else ""
     be = "is" if len(lacking) == 1 else "are"
     ending = f"add the column [{UNITS[kind]}] or map the file's own name with --columns"
+    if kind == "q" and len(lacking) < len(order):
+        ending += f"; {_can_be_held(lacking[0])}"
     if kind in ("v", "a"):
         ending += f", or leave out all {kind} columns: they are derived from q"
     return header.error(f"column {told}{more} {be} missing{hint}", ending)
+
+
+def _can_be_held(joint: str) -> str:
+    return f"joints that stood still, like fingers, can be held: --hold {joint}=0"
 
 
 def _unmapped(header: Header, ours: str, theirs: str) -> RecordingError:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
+from lagnet.errors import RobotError
 from lagnet.rigid_body.xml_files import XmlFile
+
+NONE_HELD: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +50,21 @@ def moving_bodies(model: pin.Model) -> tuple[str, ...]:
         if frame.type == pin.FrameType.BODY:
             names.setdefault(frame.parentJoint, frame.name)
     return tuple(names.get(i, model.names[i]) for i in range(1, model.njoints))
+
+
+def check_held(held: Mapping[str, float], joints: Iterable[str], where: str) -> list[str]:
+    """What is said of joints that the user wants held still [rad or m].
+
+    Raises:
+        RobotError: no such joint, or a position that is no number.
+    """
+    known = list(joints)
+    for name, position in held.items():
+        if name not in known:
+            raise RobotError(f"has no joint {name} to hold", where=where, choices=known)
+        if not np.isfinite(position):
+            raise RobotError(f"joint {name} cannot be held at {position}", where=where, next_step="give a number")
+    return [f"joint {name} is held at {position:g}" for name, position in held.items()]
 
 
 def friction_warning(joints: Iterable[str]) -> list[str]:

@@ -5,6 +5,7 @@ Read here and not by Pinocchio's own parser, which writes past its buffers on ma
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from xml.etree.ElementTree import Element
 
@@ -12,38 +13,49 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
+from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
 from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.mjcf_checks import SUPPORTED, reduce_mjcf
 from lagnet.rigid_body.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
 from lagnet.rigid_body.urdf_checks import numbers
 from lagnet.rigid_body.xml_files import XmlFile
 
+MOST_COEFFICIENTS = 3
 Defaults = dict[str, dict[str, dict[str, str]]]  # class → tag → attributes
 
 
-def read_mjcf(file: XmlFile) -> Description:
+def read_mjcf(file: XmlFile, held: Mapping[str, float] = NONE_HELD) -> Description:
     """The arm of an MJCF file whose bodies state their inertials, or have plain shapes to take them from.
+
+    Args:
+        file: the file's bytes.
+        held: joints to hold still and where [rad or m], e.g. fingers.
 
     Raises:
         RobotError: naming the file and the body or joint at fault.
     """
     root, where = file.root(), file.source
     warnings = reduce_mjcf(root, where)
-    reader = _reader(root, where)
+    names = [joint.get("name", "") for joint in root.iter("joint") if joint.get("name")]
+    warnings += check_held(held, names, where)
+    reader = _reader(root, where, held)
     for body in root.findall("worldbody/body"):
         reader.add_body(body, 0, pin.SE3.Identity(), "main")
     for option in root.findall("option"):
         if option.get("gravity") is not None:
             reader.model.gravity.linear = numbers(option, "gravity", 3, where, option)
     model = reader.model
-    warnings += friction_warning(reader.with_friction) + mass_warnings(model, where)
+    if model.nv == 0:
+        raise RobotError("has no moving joint", where=where)
+    warnings += friction_warning(reader.declared["friction"]) + left_out_warnings(reader.declared)
+    warnings += mass_warnings(model, where)
     links = moving_bodies(model)
     inertials = tuple((link, model.inertias[i + 1].toDynamicParameters()) for i, link in enumerate(links))
-    return Description(model, tuple(reader.types), links, inertials, "mjcf", where, file, (), tuple(warnings))
+    still = tuple(held.items())
+    return Description(model, tuple(reader.types), links, inertials, "mjcf", where, file, still, tuple(warnings))
 
 
-def _reader(root: Element, where: str) -> _Reader:
+def _reader(root: Element, where: str, held: Mapping[str, float]) -> _Reader:
     settings: dict[str, str] = {}
     for compiler in root.findall("compiler"):
         settings.update(compiler.attrib)
@@ -52,7 +64,7 @@ def _reader(root: Element, where: str) -> _Reader:
         _collect(group, "main", defaults, where)
     reading = Reading(where, settings.get("angle", "degree") == "degree", settings.get("eulerseq", "xyz"))
     from_shapes, auto = settings.get("inertiafromgeom") == "true", settings.get("autolimits", "true") == "true"
-    return _Reader(reading, defaults, from_shapes, auto)
+    return _Reader(reading, defaults, from_shapes, auto, held)
 
 
 def _collect(group: Element, parent: str, defaults: Defaults, where: str, top: bool = True) -> None:
@@ -77,16 +89,21 @@ class _Reader:
     defaults: Defaults
     from_shapes: bool
     auto_limits: bool
+    held: Mapping[str, float]
     model: pin.Model = field(default_factory=pin.Model)
     types: list[str] = field(default_factory=list)
-    with_friction: list[str] = field(default_factory=list)
+    declared: dict[str, list[str]] = field(default_factory=lambda: {"friction": [], "spring": [], "gravcomp": []})
 
     def add_body(self, body: Element, parent: int, offset: pin.SE3, inherited: str) -> None:
         """Adds a body and all that hangs on it; offset is the frame around it in the frame of the joint before."""
         inherited = body.get("childclass", inherited)
         place = offset * placement(body, body, self.reading)
+        if numbers(body, "gravcomp", 1, self.reading.where, body, "0")[0]:
+            self.declared["gravcomp"].append(body.get("name", ""))
         joint = body.find("joint")
-        if joint is not None:
+        if joint is not None and joint.get("name", "") in self.held:
+            place = place * self._held_at(self._resolved(joint, inherited, body), body)
+        elif joint is not None:
             parent, place = self._add_joint(self._resolved(joint, inherited, body), body, parent, place)
         self.model.appendBodyToJoint(parent, self._inertia(body, inherited), place)
         self._add_frame(body, parent, place)
@@ -118,17 +135,8 @@ class _Reader:
 
     def _add_joint(self, joint: Element, body: Element, parent: int, place: pin.SE3) -> tuple[int, pin.SE3]:
         """Adds the joint of a body and returns its index and where the body lies in its frame."""
-        name, kind, where = joint.get("name", ""), joint.get("type", "hinge"), self.reading.where
-        if kind not in SUPPORTED:
-            what = f"joint {name} of body {body.get('name')} is of type '{kind[:60]}', which has no single position"
-            raise RobotError(what, where=where, choices=SUPPORTED)
-        axis = numbers(joint, "axis", 3, where, body, "0 0 1")
-        if np.linalg.norm(axis) < 1e-9:
-            raise RobotError(f"joint {name} has an axis of length zero", where=where)
-        axis = axis / np.linalg.norm(axis)
-        anchor = pin.SE3(np.eye(3), numbers(joint, "pos", 3, where, body, "0 0 0"))
-        (reference,) = numbers(joint, "ref", 1, where, body, "0")
-        start = place * anchor * _displacement(kind, axis, -self._turned(kind, reference))
+        name, (kind, axis, anchor, reference) = joint.get("name", ""), self._geometry(joint, body)
+        start = place * anchor * _displacement(kind, axis, -reference)
         low, high = self._limits(joint, kind, body)
         scalars = [np.array([x]) for x in (self._effort(joint, body), np.inf, low, high)]
         index = self.model.addJoint(parent, _joint_model(kind, axis), start, name, *scalars)
@@ -137,6 +145,24 @@ class _Reader:
         self.types.append("prismatic" if kind == "slide" else "revolute" if bounded else "continuous")
         self._declared(joint, body, index)
         return index, anchor.inverse()
+
+    def _held_at(self, joint: Element, body: Element) -> pin.SE3:
+        """How far a joint that is held still moves its body from where it is drawn."""
+        kind, axis, anchor, reference = self._geometry(joint, body)
+        return anchor * _displacement(kind, axis, self.held[joint.get("name", "")] - reference) * anchor.inverse()
+
+    def _geometry(self, joint: Element, body: Element) -> tuple[str, np.ndarray, pin.SE3, np.ndarray]:
+        """Kind, unit axis and point of a joint in its body, and the position [rad or m] at which the body is drawn."""
+        name, kind, where = joint.get("name", ""), joint.get("type", "hinge"), self.reading.where
+        if kind not in SUPPORTED:
+            what = f"joint {name} of body {body.get('name')} is of type '{kind[:60]}', which has no single position"
+            raise RobotError(what, where=where, choices=SUPPORTED)
+        axis = numbers(joint, "axis", 3, where, body, "0 0 1")
+        if np.linalg.norm(axis) < 1e-9:
+            raise RobotError(f"joint {name} has an axis of length zero", where=where)
+        anchor = pin.SE3(np.eye(3), numbers(joint, "pos", 3, where, body, "0 0 0"))
+        (reference,) = numbers(joint, "ref", 1, where, body, "0")
+        return kind, axis / np.linalg.norm(axis), anchor, self._turned(kind, reference)
 
     def _turned(self, kind: str, value: np.ndarray | float) -> np.ndarray:
         return self.reading.angle(value) if kind == "hinge" else np.asarray(value, dtype=float)
@@ -159,14 +185,25 @@ class _Reader:
             return np.inf
         return float(np.abs(numbers(joint, "actuatorfrcrange", 2, self.reading.where, body)).max())
 
+    def _coefficients(self, joint: Element, key: str, body: Element) -> np.ndarray:
+        """One number, or the coefficients of a polynomial that newer MuJoCo takes for damping and stiffness."""
+        count = min(max(1, len(joint.get(key, "0").split())), MOST_COEFFICIENTS)
+        return numbers(joint, key, count, self.reading.where, body, "0")
+
     def _declared(self, joint: Element, body: Element, index: int) -> None:
-        """Rotor inertia is part of the model; damping and friction are only noted."""
-        found = {key: numbers(joint, key, 1, self.reading.where, body, "0")[0] for key in ("damping", "frictionloss")}
-        if any(found.values()):
-            self.with_friction.append(joint.get("name", ""))
+        """Rotor inertia is part of the model; damping, friction and springs are only noted."""
+        for what, keys in (("friction", ("damping", "frictionloss")), ("spring", ("stiffness",))):
+            if any(self._coefficients(joint, key, body).any() for key in keys):
+                self.declared[what].append(joint.get("name", ""))
         armature = np.array(self.model.armature)
         armature[self.model.joints[index].idx_v] = numbers(joint, "armature", 1, self.reading.where, body, "0")[0]
         self.model.armature = armature
+
+
+def left_out_warnings(declared: Mapping[str, list[str]]) -> list[str]:
+    """What is said of torques that a simulator would add: they must stay visible in a comparison."""
+    words = {"spring": "the spring (stiffness) of joint", "gravcomp": "gravity compensation (gravcomp) of body"}
+    return [f"{words[key]} {', '.join(declared[key])} is left out" for key in words if declared[key]]
 
 
 def _joint_model(kind: str, axis: np.ndarray) -> pin.JointModel:

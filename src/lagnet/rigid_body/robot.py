@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, final
@@ -12,7 +12,7 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body import batches
-from lagnet.rigid_body.description import Description
+from lagnet.rigid_body.description import NONE_HELD, Description
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.mjcf import read_mjcf
 from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
@@ -22,13 +22,14 @@ from lagnet.rigid_body.xml_files import read_xml
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
 
-def load_description(spec: str | Path) -> Robot:
+def load_description(spec: str | Path, held: Mapping[str, float] = NONE_HELD) -> Robot:
     """The rigid bodies of a named robot, a URDF file or an MJCF file.
 
     The grippers of named robots are held still at zero (`named_robots.HELD_JOINTS`); those of a file are kept as given.
 
     Args:
         spec: a name of example-robot-data (`ur5`, `panda`, …), or the path of a .urdf or .xml file.
+        held: joints that no recording tells of, e.g. fingers, and where they are held still [rad or m].
 
     Raises:
         RobotError: unknown name, unreadable file, or not a fixed-base arm of one-degree-of-freedom joints.
@@ -37,11 +38,11 @@ def load_description(spec: str | Path) -> Robot:
     looks_like_a_path = isinstance(spec, Path) or path.suffix != "" or len(path.parts) > 1
     if not looks_like_a_path and (text in named_robots() or not path.exists()):  # a folder "ur5" does not hide the UR-5
         file = read_xml(named_robot_path(text))
-        return Robot(read_urdf(file, "named_robot", text, HELD_JOINTS.get(text, ())))
+        return Robot(read_urdf(file, "named_robot", text, {**dict.fromkeys(HELD_JOINTS.get(text, ()), 0.0), **held}))
     if path.suffix.lower() == ".xacro":
         raise RobotError("is a xacro file", where=text, next_step="run xacro on it first")
     file = read_xml(path)
-    return Robot(read_mjcf(file) if file.root().tag == "mujoco" else read_urdf(file))
+    return Robot(read_mjcf(file, held) if file.root().tag == "mujoco" else read_urdf(file, held=held))
 
 
 @final

@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import Description, friction_warning, moving_bodies
+from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
 from lagnet.rigid_body.inertia import parameters_of_body
 from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.urdf_checks import check_tree, numbers
@@ -21,14 +21,16 @@ UNLIMITED = "1e300"  # a limit that the URDF parser accepts; callers see inf
 KEPT = {"link": ("inertial",), "joint": ("origin", "parent", "child", "axis", "limit")}
 
 
-def read_urdf(file: XmlFile, kind: str = "urdf", source: str | None = None, held: Iterable[str] = ()) -> Description:
+def read_urdf(
+    file: XmlFile, kind: str = "urdf", source: str | None = None, held: Mapping[str, float] = NONE_HELD
+) -> Description:
     """The arm of a URDF file.
 
     Args:
         file: the file's bytes.
         kind: 'urdf' or 'named_robot'.
         source: what the user asked for, the file's path by default.
-        held: joints to hold at zero, e.g. fingers.
+        held: joints to hold still and where [rad or m], e.g. fingers.
 
     Raises:
         RobotError: naming the file and the joint or link at fault.
@@ -55,7 +57,7 @@ def read_urdf(file: XmlFile, kind: str = "urdf", source: str | None = None, held
 
 
 def normalise(
-    root: Element, where: str, held: Iterable[str], warnings: list[str]
+    root: Element, where: str, held: Mapping[str, float], warnings: list[str]
 ) -> tuple[dict[str, str], dict[str, float]]:
     """Strips the tree to kinematics and inertias and holds still what does not belong to the arm.
 
@@ -68,7 +70,9 @@ def normalise(
     check_tree(root, where)
     _strip(root)
     joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
-    positions = _held_positions(joints, set(held), warnings)
+    moving = [name for name, joint in joints.items() if joint.get("type") in MOVING]
+    warnings += check_held(held, moving, where)
+    positions = _held_positions(joints, held, warnings)
     hold_joints(root, positions, where)
     types = {}
     for name, joint in joints.items():
@@ -99,8 +103,8 @@ def _strip(root: Element) -> None:
             tensor.set(key, tensor.get(key, "0"))
 
 
-def _held_positions(joints: dict[str, Element], held: set[str], warnings: list[str]) -> dict[str, float]:
-    positions = {name: 0.0 for name in joints if name in held}
+def _held_positions(joints: dict[str, Element], held: Mapping[str, float], warnings: list[str]) -> dict[str, float]:
+    positions = dict(held)
     for name, joint in joints.items():
         mimic = joint.find("mimic")
         if mimic is not None and name not in positions and joint.get("type") in MOVING:
