@@ -21,6 +21,7 @@ from lagnet.diagnosis.second_look import look_again
 from lagnet.diagnosis.shadows import drop_shadows
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect, load_before
+from lagnet.models.tilted_bodies import TILT
 
 ROUNDS = 3  # a search with a load that is nearly right finds what is needed to make it right
 CHANGED = 0.02  # of a joint's usual load: less does not change what is seen there
@@ -34,6 +35,7 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, Workbench, Fou
         problem: just posed.
         noise: shape (dof,), noise floor [N m].
     """
+    problem = replace(problem, known=_mounting(problem))
     bench, found = _search_once(problem, noise)
     for _ in range(ROUNDS):
         known = _known(bench.library, found)
@@ -69,6 +71,14 @@ def _carried_over(library: Library, found: Found, to: Library) -> Found:
         return tuple(index[p] for p in places if p in index)
 
     return replace(found, far=kept(found.far), local=tuple(kept(own) for own in found.local))
+
+
+def _mounting(problem: Problem) -> tuple[NamedEffect, ...]:
+    """A wall or ceiling that torque asks for: in whose field a payload must be seen from the start."""
+    tilt = effect_named(TILT)
+    if not hasattr(problem.nominal, "link_regressor"):
+        return ()
+    return tuple(NamedEffect(TILT, None, shape) for shape in tilt.shapes(problem.summary(), None) if shape)
 
 
 def _known(library: Library, found: Found) -> tuple[NamedEffect, ...]:

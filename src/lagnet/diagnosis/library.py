@@ -11,9 +11,10 @@ import numpy as np
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
+from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected import NamedEffect, load_before
-from lagnet.models.tilted_bodies import TILT, weight_per_tilt
+from lagnet.models.tilted_bodies import BODIES, body_in_turned_field, weight_in_each
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,15 @@ class Library:
     def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
         h = self.hypotheses[index]
         columns = h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
-        return columns + weight_per_tilt(motion, known) if known and h.effect == TILT else columns
+        if known and isinstance(h.law, GravityTilt):
+            changes = h.law.changes(np.asarray(motion.model.gravity, dtype=float), dict(h.shape))
+            if h.shape:
+                changes[:, 0] = 0.0  # bodies are seen in the field of a large tilt already
+            return columns + weight_in_each(motion, known, changes)
+        if known and h.effect in BODIES:
+            link = motion.n_dof - 1 if h.joint is None else h.joint
+            return columns + body_in_turned_field(motion, link, known)
+        return columns
 
 
 def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:

@@ -22,6 +22,8 @@ def explain(
     """One or two sentences: what, where, how large, and what it does for the held-out error."""
     where = f"at {joint}" if joint else "on the whole arm"
     shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in parameters[:MOST_PARAMETERS])
+    remark = law.remark({p.name: p.value for p in parameters})
+    shown += f" ({remark})" if remark else ""
     first = f"{law.title} {where}, {law.formula} with {shown}: without it the held-out error is "
     first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
     first += f"{percent(evidence.holdout_nmse_with)}."

@@ -124,6 +124,10 @@ class Effect(ABC):
         lower, upper = self.bounds(shape)
         return bool(np.all(coefficients >= lower) and np.all(coefficients <= upper))
 
+    def remark(self, values: Mapping[str, float]) -> str:
+        """What the parameters come to in plain words, where numbers alone hide it; empty by default."""
+        return ""
+
     def exists_at(self, joint: int | None) -> bool:
         """Whether an arm can have the effect at a joint at all, whatever moves."""
         return True

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.effects.inertia.gravity_tilt import tilts_of
+from lagnet.effects.inertia.gravity_tilt import is_large
 from lagnet.effects.motion import Motion
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
@@ -42,19 +42,40 @@ def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | floa
     return sum((_weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
 
 
-def weight_per_tilt(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
-    """Holding torque of payloads and link changes per unit of each tilt, shape (n, dof, 2) [N m/rad]; 0 without any."""
+def body_in_turned_field(motion: Motion, link: int, effects: Sequence[Named]) -> np.ndarray | float:
+    """Holding torque per unit of a body's parameters in the difference that large tilts make, shape (n, dof, 10).
+
+    Zero without a large tilt: where a tilt is small, its product with a body is counted with the tilt.
+    """
+    large = [e for e in effects if e.effect == TILT and is_large(e.values)]
+    if not large:
+        return 0.0
+    gravity = np.asarray(motion.model.gravity, dtype=float)
+    change = sum((_law(e).gravity_of(gravity, e.values) - gravity for e in large), np.zeros(3))
+    return np.einsum("gnji,g->nji", _fields_of(motion, link), change)
+
+
+def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray) -> np.ndarray | float:
+    """Holding torque of payloads and link changes in each of some changes of gravity, given as columns of shape (3, k).
+
+    Returns:
+        Shape (n, dof, k) [N m]; 0 without payload and link change.
+    """
     bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
     if not bodies:
         return 0.0
-    turns = tilts_of(np.asarray(motion.model.gravity, dtype=float)).T
-    return np.stack([sum((_weight(motion, e, g) for e in bodies), np.zeros_like(motion.load)) for g in turns], axis=2)
+    return np.stack(
+        [sum((_weight(motion, e, g) for e in bodies), np.zeros_like(motion.load)) for g in changes.T], axis=2
+    )
 
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = motion.n_dof - 1 if body.joint is None else body.joint
-    fields = motion.remembered(f"weights_{link}", lambda: _fields(motion, link))
-    return np.einsum("gnji,i,g->nj", fields, _law(body).coordinates(body.values), gravity)
+    return np.einsum("gnji,i,g->nj", _fields_of(motion, link), _law(body).coordinates(body.values), gravity)
+
+
+def _fields_of(motion: Motion, link: int) -> np.ndarray:
+    return motion.remembered(f"weights_{link}", lambda: _fields(motion, link))
 
 
 def _fields(motion: Motion, link: int) -> np.ndarray:

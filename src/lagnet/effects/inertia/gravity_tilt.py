@@ -1,6 +1,6 @@
 """Gravity tilt: a base that is not mounted as level as the model believes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import final
 
 import numpy as np
@@ -8,7 +8,13 @@ from scipy.spatial.transform import Rotation
 
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_any_motion
+from lagnet.effects.inertia.mounting import DOWN, FAR, far_direction
 from lagnet.effects.motion import Motion
+
+SMALL = 0.6  # rad: as far as the law made linear about the level base is used
+UPSIDE_DOWN = 2.8  # rad
+TURN = 3.2  # rad: a base that hangs from a ceiling is turned by π
+SHARE = (0.5, 1.5)  # of a large tilt that is already near: its own coefficient would be 1
 
 
 @final
@@ -19,8 +25,8 @@ class GravityTilt(Effect):
     title = "Tilted base"
     formula = "Y_g(q) (R(θ)ᵀ g − g)"
     parameters = (
-        Parameter("theta_1", "θ_1", "rad", "rotation of the base about its first horizontal axis", -0.6, 0.6),
-        Parameter("theta_2", "θ_2", "rad", "rotation of the base about its second horizontal axis", -0.6, 0.6),
+        Parameter("theta_1", "θ_1", "rad", "rotation of the base about its first horizontal axis", -TURN, TURN),
+        Parameter("theta_2", "θ_2", "rad", "rotation of the base about its second horizontal axis", -TURN, TURN),
     )
     whole_arm = True
     reaches_all = True
@@ -32,21 +38,52 @@ class GravityTilt(Effect):
     absent = (("theta_1", 0.0), ("theta_2", 0.0))
     source = "swevers2007"
 
+    def shapes(self, motion: Motion, joint: int | None) -> Sequence[Values]:
+        """Level; and where the recorded torque says so, a base mounted on a wall or a ceiling."""
+        if motion.recorded is None:
+            return ({},)
+        direction = motion.remembered("mounting", lambda: self._mounting(motion))
+        return ({},) if direction is None else ({}, _turn_to(direction))
+
+    def _mounting(self, motion: Motion) -> np.ndarray | None:
+        model, still = motion.model, np.zeros_like(motion.q)
+        axes = np.linalg.norm(model.gravity) * np.column_stack(level_frame(np.asarray(model.gravity, dtype=float)))
+        last = motion.n_dof - 1
+        fields = np.stack([model.with_gravity(g).link_regressor(last, motion.q, still, still) for g in axes.T])
+        inertia = model.with_gravity(np.zeros(3)).link_regressor(last, motion.q, motion.v, motion.a)
+        return far_direction(self._gravity_regressor(motion) @ axes, fields, inertia, motion)
+
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
-        return self._gravity_regressor(motion) @ tilts_of(np.asarray(motion.model.gravity, dtype=float))
+        return self._gravity_regressor(motion) @ self.changes(np.asarray(motion.model.gravity, dtype=float), shape)
+
+    def changes(self, gravity: np.ndarray, shape: Mapping[str, float]) -> np.ndarray:
+        """Change of gravity in the frame of the base per unit of each coefficient, shape (3, k) [m/s²].
+
+        About a large tilt the first is that tilt itself.
+        """
+        return np.linalg.norm(gravity) * np.column_stack(level_frame(gravity)) @ _changes(shape)
+
+    def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = (np.full(2, SMALL * sign) for sign in (-1.0, 1.0))
+        return (np.append(SHARE[0], lower), np.append(SHARE[1], upper)) if shape else (lower, upper)
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
-        return {"theta_1": float(coefficients[0]), "theta_2": float(coefficients[1])}
+        if not shape:
+            return {"theta_1": float(coefficients[0]), "theta_2": float(coefficients[1])}
+        return _turn_to(DOWN + _changes(shape) @ coefficients)
 
     def gravity_of(self, gravity: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
         """Gravity in the frame of the tilted base, shape (3,) [m/s²]."""
-        first, second = horizontal_axes(gravity)
-        turn = Rotation.from_rotvec(values["theta_1"] * first + values["theta_2"] * second)
-        return turn.inv().as_matrix() @ gravity
+        return np.linalg.norm(gravity) * np.column_stack(level_frame(gravity)) @ _direction(values)
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
         gravity = np.asarray(motion.model.gravity, dtype=float)
         return self._gravity_regressor(motion) @ (self.gravity_of(gravity, values) - gravity)
+
+    def remark(self, values: Mapping[str, float]) -> str:
+        turned = float(np.hypot(values["theta_1"], values["theta_2"]))
+        mounted = "the arm hangs from a ceiling" if turned > UPSIDE_DOWN else "as on a slope or a wall"
+        return f"turned by {np.rad2deg(turned):.0f}°: {mounted}" if turned > SMALL else ""
 
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         return needs_any_motion(motion)
@@ -55,16 +92,41 @@ class GravityTilt(Effect):
         return motion.remembered("gravity", lambda: motion.model.gravity_regressor(motion.q))
 
 
-def tilts_of(gravity: np.ndarray) -> np.ndarray:
-    """Change of gravity in the frame of the base per unit of each small tilt, shape (3, 2) [m/s² per rad]."""
-    first, second = horizontal_axes(gravity)
-    return np.column_stack([-np.cross(first, gravity), -np.cross(second, gravity)])
+def is_large(turn: Mapping[str, float]) -> bool:
+    """Whether a tilt is one that is looked for by its direction first."""
+    return bool(np.hypot(turn["theta_1"], turn["theta_2"]) > FAR)
 
 
-def horizontal_axes(gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two unit axes of the base across gravity; x and y of the base where gravity points along z."""
+def level_frame(gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Two unit axes of the base across gravity and the one against it; x, y and z where gravity points along -z."""
     down = gravity / np.linalg.norm(gravity)
     across = np.eye(3)[0] if abs(down[0]) < 0.9 else np.eye(3)[2]
     first = across - down * (across @ down)
     first /= np.linalg.norm(first)
-    return first, np.cross(-down, first)
+    return first, np.cross(-down, first), -down
+
+
+def _direction(turn: Mapping[str, float]) -> np.ndarray:
+    """Unit vector of gravity in the level frame after the base was turned, shape (3,)."""
+    return Rotation.from_rotvec([-turn["theta_1"], -turn["theta_2"], 0.0]).apply(DOWN)
+
+
+def _turn_to(direction: np.ndarray) -> Values:
+    """The turn about a horizontal axis after which gravity points along a direction of the level frame."""
+    x, y, z = direction / np.linalg.norm(direction)
+    across = np.hypot(x, y)
+    first, second = (-y / across, x / across) if across > 0.0 else (1.0, 0.0)
+    angle = np.arctan2(across, -z)
+    return {"theta_1": float(angle * first), "theta_2": float(angle * second)}
+
+
+def _changes(shape: Mapping[str, float]) -> np.ndarray:
+    """Change of the direction of gravity in the level frame per unit of each coefficient, shape (3, 2) or (3, 3).
+
+    About the level base, those of the two tilts; about a large tilt, that tilt itself and two turns there.
+    """
+    if not shape:
+        return np.array([[0.0, 1.0], [-1.0, 0.0], [0.0, 0.0]])
+    there = _direction(shape)
+    first, second, _ = level_frame(there)
+    return np.column_stack([there - DOWN, first, second])
