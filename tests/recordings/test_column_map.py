@@ -76,7 +76,7 @@ def test_arrays_of_a_mat_file_are_mapped(tmp_path: Path) -> None:
 
 REFUSED = {
     "not TOML": ("q_0 = = 3", "is not valid TOML"),
-    "unknown section": ("[colums]\nq_0 = 'x'", r"\[colums\] is no section.*columns, scale, torque_constant"),
+    "unknown section": ("[colums]\nq_0 = 'x'", r"\[colums\] is no section.*columns, scale, offset, torque_constant"),
     "unknown signal": ("[columns]\nposition_0 = 'x'", r"position_0 is no column of ours"),
     "misspelt kind": ("[columns]\ntraj = 'x'", "did you mean trajectory"),
     "number for a name": ("[columns]\nq_0 = 3", "must be the file's column name, in quotes"),

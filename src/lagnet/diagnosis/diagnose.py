@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.compose import compose_verdict
+from lagnet.diagnosis.conventions import refuse_other_conventions
 from lagnet.diagnosis.curves import collect_evidence
 from lagnet.diagnosis.evidence import Evidence
 from lagnet.diagnosis.form_error import with_form_error
@@ -86,7 +87,8 @@ def diagnose(
         seed: of everything random.
 
     Raises:
-        DiagnosisError: no recording, or joints that are not the model's.
+        DiagnosisError: no recording, joints that are not the model's, or recordings in another convention (signs,
+            units, zeros of joints) than the model.
     """
     fit_on, held = _divide(recordings, robot, holdout)
     ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
@@ -96,7 +98,9 @@ def diagnose(
     def at(band: float | None, shift: float = 0.0) -> Inquiry:
         fit = condition(fit_on, band, shift)
         unseen = condition(held, fit.bandwidth, shift)
-        problem = replace(sharpen(pose_problem(robot, fit, unseen, ends_of)), missed=known)
+        posed = pose_problem(robot, fit, unseen, ends_of)
+        refuse_other_conventions(posed)
+        problem = replace(sharpen(posed), missed=known)
         noise = noise_floor(problem, fit, seed)
         noise = noise if known is None else np.hypot(noise, known)
         inquiry = inquire(problem, fit, unseen, noise, seed)

@@ -35,7 +35,7 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, Workbench, Fou
         problem: just posed.
         noise: shape (dof,), noise floor [N m].
     """
-    problem = replace(problem, known=_mounting(problem))
+    problem = replace(problem, known=mounting_of(problem))
     bench, found = _search_once(problem, noise)
     for _ in range(ROUNDS):
         known = _known(bench.library, found)
@@ -73,7 +73,7 @@ def _carried_over(library: Library, found: Found, to: Library) -> Found:
     return replace(found, far=kept(found.far), local=tuple(kept(own) for own in found.local))
 
 
-def _mounting(problem: Problem) -> tuple[NamedEffect, ...]:
+def mounting_of(problem: Problem) -> tuple[NamedEffect, ...]:
     """A wall or ceiling that torque asks for: in whose field a payload must be seen from the start."""
     tilt = effect_named(TILT)
     if not hasattr(problem.nominal, "link_regressor"):

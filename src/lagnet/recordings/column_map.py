@@ -8,6 +8,8 @@ v = "actual_qd_{i}"             # every joint: {i} counts from 0, {i1} from 1, {
 time = 1e-3
 q = 0.0174532925                # every joint ...
 "q_6" = 0.001                   # ... unless the column has its own
+[offset]                        # what is then added, in SI units: a zero that lies elsewhere
+"q_1" = -1.5707963268
 [torque_constant]               # N m (or N) per ampere at the joint, one a joint
 values = [14.87, 13.26, 11.13, 10.62, 11.03, 11.47]
 """
@@ -24,7 +26,7 @@ from lagnet.errors import RecordingError, closest
 
 JOINT_KINDS = ("q", "v", "a", "tau", "current")
 KINDS = ("time", "trajectory", *JOINT_KINDS)
-SECTIONS = ("columns", "scale", "torque_constant")
+SECTIONS = ("columns", "scale", "offset", "torque_constant")
 MAX_BYTES = 1024**2
 
 
@@ -37,15 +39,17 @@ class ColumnMap:
         scale: our name or kind to the factor that makes SI units.
         torque_constant: [N m/A] or [N/A], one a joint, or None.
         path: where it was read from.
+        offset: our name or kind to what is added after scaling, in SI units.
     """
 
     columns: dict[str, str] = field(default_factory=dict)
     scale: dict[str, float] = field(default_factory=dict)
     torque_constant: tuple[float, ...] | None = None
     path: str = "mapping"
+    offset: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for section in ("columns", "scale"):
+        for section in ("columns", "scale", "offset"):
             for name in getattr(self, section):
                 self._check_name(section, name)
         for name, file_name in self.columns.items():
@@ -54,8 +58,12 @@ class ColumnMap:
         for name, factor in self.scale.items():
             if not _is_number(factor) or factor == 0:
                 raise self._error(f"[scale] {name} must be a number other than zero, not {factor!r}")
-        if "trajectory" in self.scale:
-            raise self._error("[scale] trajectory has no unit to scale")
+        for name, added in self.offset.items():
+            if not _is_number(added):
+                raise self._error(f"[offset] {name} must be a number, not {added!r}")
+        for section in ("scale", "offset"):
+            if "trajectory" in getattr(self, section):
+                raise self._error(f"[{section}] trajectory has no unit")
         for value in self.torque_constant or ():
             if not _is_number(value) or value == 0:
                 raise self._error(f"[torque_constant] values must be numbers other than zero, not {value!r}")
@@ -74,14 +82,22 @@ class ColumnMap:
 
     def factor(self, kind: str, index: int = 0, joint: str = "") -> float:
         """What the file's numbers are multiplied by."""
-        for ours in (f"{kind}_{index}", f"{kind}_{joint}", kind):
-            if ours in self.scale:
-                return float(self.scale[ours])
-        return 1.0
+        return self._stated(self.scale, kind, index, joint, 1.0)
+
+    def added(self, kind: str, index: int = 0, joint: str = "") -> float:
+        """What is added to the file's numbers after that."""
+        return self._stated(self.offset, kind, index, joint, 0.0)
 
     def states_unit(self, kind: str, index: int, joint: str) -> bool:
         """Whether the user stated a factor for this column, so that its unit is not to be guessed."""
         return any(ours in self.scale for ours in (f"{kind}_{index}", f"{kind}_{joint}", kind))
+
+    @staticmethod
+    def _stated(values: dict[str, float], kind: str, index: int, joint: str, default: float) -> float:
+        for ours in (f"{kind}_{index}", f"{kind}_{joint}", kind):
+            if ours in values:
+                return float(values[ours])
+        return default
 
     def _check_name(self, section: str, name: str) -> None:
         kind = name.split("_", 1)[0]
@@ -114,7 +130,11 @@ def read_column_map(path: str | Path) -> ColumnMap:
             "[torque_constant] must hold one list", where=where, next_step="write values = [...], one number a joint"
         )
     return ColumnMap(
-        data.get("columns", {}), data.get("scale", {}), None if values is None else tuple(values), path=where
+        data.get("columns", {}),
+        data.get("scale", {}),
+        None if values is None else tuple(values),
+        where,
+        data.get("offset", {}),
     )
 
 

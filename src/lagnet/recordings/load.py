@@ -158,7 +158,7 @@ class _Assembly:
 
     def recording(self, sha256: str) -> Recording:
         rows, layout = self.table.rows, self.layout
-        time = self.table.numbers[layout.time] * self.column_map.factor("time")
+        time = self.table.numbers[layout.time] * self.column_map.factor("time") + self.column_map.added("time")
         self._refuse_few(time.size)
         self._refuse_not_finite()
         self._refuse_empty_labels()
@@ -233,6 +233,7 @@ class _Assembly:
         columns = self.layout.signals[kind]
         scaled = [
             self.table.numbers[name] * self.column_map.factor(kind, i, self.layout.joints[i])
+            + self.column_map.added(kind, i, self.layout.joints[i])
             for i, name in enumerate(columns)
         ]
         return np.stack(scaled, axis=1)

@@ -1,0 +1,192 @@
+"""Recordings in another convention than the model's: signs, units, zeros of joints, columns. Mended before any physics.
+
+No cause in a catalogue turns a torque round or a joint by a right angle, and against such a recording every name would
+be nonsense. What a joint's offset, friction and rotor explain is taken off model and recording alike, so that they need
+not be right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from lagnet.diagnosis.informed_search import mounting_of
+from lagnet.diagnosis.problem import Problem
+from lagnet.effects.catalogue import CATALOGUE
+from lagnet.effects.inertia.gravity_tilt import GravityTilt
+from lagnet.effects.motion import Motion
+from lagnet.errors import DiagnosisError
+from lagnet.models.corrected import torque_along
+
+MISFIT = 0.5  # of some joint's torque power: only then is a convention looked for
+LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
+MENDED = 0.15  # of that misfit may be left, or the convention is not what is wrong
+ALIKE = 0.95  # correlation of recorded and nominal torque that are the same but for a factor
+BETTER = 0.5  # of what the arm on a wall or ceiling leaves: a convention must leave less to be held for the cause
+SCALES = (0.2, 5.0)  # factors that a wrong torque constant may have
+SAMPLES = 1500
+RIGHT_ANGLES = (0.0, np.pi / 2, np.pi, -np.pi / 2)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One joint's columns read otherwise: q as turn · q + zero, torque as sense · τ; v and a follow q."""
+
+    joint: int
+    turn: float = 1.0
+    zero: float = 0.0
+    sense: float = 1.0
+
+    def apply(self, motion: Motion) -> Motion:
+        """The motion and its recorded torque as read so."""
+        assert motion.recorded is not None
+        q, v, a, tau = (x.copy() for x in (motion.q, motion.v, motion.a, motion.recorded))
+        q[:, self.joint] = self.turn * q[:, self.joint] + self.zero
+        for x, sign in ((v, self.turn), (a, self.turn), (tau, self.sense)):
+            x[:, self.joint] *= sign
+        return replace(motion, q=q, v=v, a=a, recorded=tau, cache={})
+
+    def mapping(self, name: str) -> list[str]:
+        """Lines of a mapping file that read it so."""
+        lines = [f'[scale] "q_{name}" = -1'] if self.turn < 0 else []
+        lines += [f'[offset] "q_{name}" = {self.zero:.6g}'] if self.zero else []
+        return lines + ([f'[scale] "tau_{name}" = -1'] if self.sense < 0 else [])
+
+
+def refuse_other_conventions(problem: Problem) -> None:
+    """Refuses recordings whose torques or positions are the model's but for sign, unit, zero or order.
+
+    Raises:
+        DiagnosisError: which columns, and how to map them.
+    """
+    motion = _few(problem.summary())
+    if _misfit(problem, motion).max() < MISFIT:
+        return
+    _refuse_scales(problem, motion)
+    _refuse_other_order(problem, motion)
+    readings, left = _readings(problem, motion)
+    if readings and left < BETTER * _misfit(_mounted(problem), motion).sum():
+        lines = [line for r in readings for line in r.mapping(problem.joints[r.joint])]
+        joints = ", ".join(dict.fromkeys(problem.joints[r.joint] for r in readings))
+        raise DiagnosisError(
+            f"the recordings have another convention than the model at {joints}: sign or zero of its columns",
+            next_step=f"if so, map them with --columns: {'; '.join(lines)}",
+        )
+
+
+def _few(motion: Motion) -> Motion:
+    assert motion.recorded is not None
+    rows = slice(None, None, max(1, motion.time.size // SAMPLES))
+    time, q, v, a, load, recorded = (
+        x[rows] for x in (motion.time, motion.q, motion.v, motion.a, motion.load, motion.recorded)
+    )
+    return replace(motion, time=time, q=q, v=v, a=a, load=load, recorded=recorded, cache={})
+
+
+def _torques(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Recorded and nominal torque of each joint less what the joint may add, over what of the recorded is left."""
+    assert motion.recorded is not None
+    model = torque_along(problem.nominal, motion.time, motion.q, motion.v, motion.a)
+    both = np.stack([motion.recorded, model], axis=2)
+    least = LEAST * motion.recorded.std(axis=0)
+    for j in range(motion.n_dof):
+        v = motion.v[:, j]
+        own = np.column_stack([np.ones_like(v), np.tanh(v / motion.slow[j]), v, motion.a[:, j]])
+        own, _ = np.linalg.qr(own / np.maximum(np.linalg.norm(own, axis=0), 1e-12))
+        both[:, j] -= own @ (own.T @ both[:, j])
+        both[:, j] /= max(float(both[:, j, 0].std()), float(least[j]), 1e-12)
+    return both[..., 0], both[..., 1]
+
+
+def _misfit(problem: Problem, motion: Motion) -> np.ndarray:
+    """Power of the difference at each joint over the power of its recorded torque, shape (dof,)."""
+    recorded, model = _torques(problem, motion)
+    return np.mean((recorded - model) ** 2, axis=0)
+
+
+def _mounted(problem: Problem) -> Problem:
+    """The problem with the arm on the wall or ceiling that torque asks for, which is physics and no convention."""
+    mounting = mounting_of(problem)
+    if not mounting:
+        return problem
+    law = CATALOGUE[mounting[0].effect]
+    assert isinstance(law, GravityTilt)
+    gravity = law.gravity_of(np.asarray(problem.nominal.gravity, dtype=float), mounting[0].values)
+    return replace(problem, nominal=problem.nominal.with_gravity(gravity))
+
+
+def _likeness(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Correlation of the recorded torque of each joint with the nominal one of each, and the factor between them."""
+    recorded, model = _torques(problem, motion)
+    products = recorded.T @ model / len(model)
+    sizes = [np.maximum(np.mean(x**2, axis=0), 1e-300) for x in (recorded, model)]
+    return products / np.sqrt(np.outer(*sizes)), products / sizes[1]
+
+
+def _refuse_other_order(problem: Problem, motion: Motion) -> None:
+    alike, _ = _likeness(problem, motion)
+    of_file, of_model = linear_sum_assignment(-alike)
+    moved = [j for j, k in zip(of_file, of_model, strict=True) if j != k]
+    if not moved or motion.recorded is None:
+        return
+    ordered = motion.recorded.copy()
+    ordered[:, of_model] = motion.recorded
+    if _misfit(problem, replace(motion, recorded=ordered)).sum() < MENDED * _misfit(problem, motion).sum():
+        told = ", ".join(f"tau_{problem.joints[j]} is the torque of {problem.joints[of_model[j]]}" for j in moved)
+        raise DiagnosisError(
+            f"columns of torque are in another order than the model's joints: {told}",
+            next_step="map them with --columns, or put them in order",
+        )
+
+
+def _refuse_scales(problem: Problem, motion: Motion) -> None:
+    alike, factor = (np.diag(x) for x in _likeness(problem, motion))
+    off = (alike > ALIKE) & ((factor < SCALES[0]) | (factor > SCALES[1]))
+    if off.any():
+        told = ", ".join(f"{float(f'{factor[j]:.2g}'):g} at {problem.joints[j]}" for j in np.flatnonzero(off))
+        raise DiagnosisError(
+            f"recorded torques are far from the model's by a factor: {told}",
+            next_step="are they those of the motors before their gears, or in another unit? map them with --columns:"
+            f' [scale] "tau_{problem.joints[int(np.flatnonzero(off)[0])]}" = {float(f"{1 / factor[off][0]:.2g}"):g}',
+        )
+
+
+def _readings(problem: Problem, motion: Motion) -> tuple[list[Reading], float]:
+    """Readings of some joints under which the recordings fit the model, one joint more at a time; none if none do.
+
+    Returns:
+        The readings, and the misfit that they leave.
+    """
+    first = float(_misfit(problem, motion).sum())
+    reversed_torque = np.flatnonzero(np.diag(_likeness(problem, motion)[0]) < -ALIKE)
+    found = [Reading(int(joint), sense=-1.0) for joint in reversed_torque]
+    for reading in found:
+        motion = reading.apply(motion)
+    left = float(_misfit(problem, motion).sum())
+    if found and left < MENDED * first:
+        return found, left
+    for _ in range(problem.n_dof):
+        tried = [(float(_misfit(problem, r.apply(motion)).sum()), r) for r in _others(problem, found)]
+        if not tried:
+            break
+        least, best = min(tried, key=lambda pair: pair[0])
+        if least > 0.9 * left:
+            break
+        motion, left = best.apply(motion), least
+        found.append(best)
+        if left < MENDED * first:
+            return found, left
+    return [], left
+
+
+def _others(problem: Problem, found: list[Reading]) -> Iterator[Reading]:
+    kinds = getattr(problem.nominal, "joint_types", ("revolute",) * problem.n_dof)
+    for joint in set(range(problem.n_dof)) - {r.joint for r in found}:
+        for zero in RIGHT_ANGLES if kinds[joint] != "prismatic" else (0.0,):
+            for turn in (1.0, -1.0):
+                for sense in (1.0, -1.0):
+                    if (turn, zero, sense) != (1.0, 0.0, 1.0):
+                        yield Reading(joint, turn, zero, sense)
