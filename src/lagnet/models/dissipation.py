@@ -1,10 +1,13 @@
-"""An ε that can only take energy out: the gradient by velocity of a dissipation function R(q, v).
+"""An ε that can only take energy out: drag on every body and friction in every joint.
 
-Every body that moves through a medium, or in a simulator with damped links, and every joint with friction adds a term
-to R that grows with its speed, so ε = ∂R/∂v opposes the motion and is odd in v: it can be neither H a, nor c, nor g.
-R is carried along the chain as the kinetic energy of `delan` is: x is the speed that velocity gives a body, and
-R = Σ ½ |B x|² + ⅓ |C x|³ over bodies, plus ½ d v² + f |v| over joints: linear and quadratic drag, viscous and dry
-friction (blurred about zero). The quadratic form is Rayleigh's (1873).
+Every body that moves through a medium, or in a simulator with damped links, meets a wrench against its motion that
+grows with its speed. Velocity is carried along the chain as in `delan`: x is the motion that v gives a body, and the
+wrench on it is D x with D = BᵀB + Σ_k |S_k x| C_kᵀC_k: linear drag, and drag that grows with a speed of the body, once
+for its translation and once for its turning. Virtual work brings it back to the joints, each of which adds
+d v + f tanh(v/v₀), viscous and dry friction. Every D is positive, so v · ε ≥ 0; and ε is odd in v, so it can be neither
+H a, nor c, nor g.
+The linear part is the slope of Rayleigh's (1873) dissipation function. A wrench of quadratic drag has none in general:
+I ω |ω| of a body whose moments differ is the gradient of nothing.
 """
 
 from __future__ import annotations
@@ -20,11 +23,12 @@ from jaxtyping import Array
 from lagnet.errors import ModelError
 from lagnet.models.chain_network import ChainNetwork, make_chain_network
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import Scalar, Vector
+from lagnet.models.lagrangian import Vector
 from lagnet.models.scales import Scales
 from lagnet.models.torque_network import SLOW
 
-SMALL = 1e-6  # of a typical speed squared: rounds the tip of |C x|³, whose slope of slope is not defined there
+DRAGS = 2  # of a body: by its translation and by its turning
+SMALL = 1e-6  # of a typical speed squared: rounds the tip of |S x|, whose slope is not defined there
 
 
 @dataclass(frozen=True)
@@ -39,11 +43,12 @@ class DissipationSettings:
 
 
 class DissipationNetwork(eqx.Module):
-    """ε = ∂R/∂v, each joint times its share.
+    """ε of drag and friction, each joint times its share.
 
     Args:
         motion: carries velocity outwards; axes: shape (dof, rank), what unit speed of each joint adds.
-        linear, cubic: one (rank, rank) matrix a joint, B and C.
+        linear: shape (dof, rank, rank), B of each body.
+        speeds, quadratic: shape (DRAGS, dof, rank, rank), S_k and C_k of each body.
         viscous, dry: shape (dof,), roots of d and f of each joint.
         shares: shape (dof,), what of ε counts on each joint; not trained, 1 unless held-out torque bears out less. With
             different shares v · ε may be negative.
@@ -52,7 +57,8 @@ class DissipationNetwork(eqx.Module):
     motion: ChainNetwork
     axes: Array
     linear: Array
-    cubic: Array
+    speeds: Array
+    quadratic: Array
     viscous: Array
     dry: Array
     shares: Array
@@ -60,30 +66,42 @@ class DissipationNetwork(eqx.Module):
     scales: Scales = eqx.field(static=True)
     settings: DissipationSettings = eqx.field(static=True)
 
-    def dissipation(self, q: Vector, v: Vector) -> Scalar:
-        """R(q, v) in units of torque times speed of each joint."""
-        speed = v / np.asarray(self.scales.velocity, v.dtype)
-        states = self.motion(self.features(q), jnp.zeros_like(self.axes[0]), tuple(self.axes * speed[:, None]))
-        power = np.asarray(self.scales.torque) * np.asarray(self.scales.velocity)
-        total = jnp.zeros_like(speed, shape=())
-        for x, one, two, size in zip(states, self.linear, self.cubic, power.tolist(), strict=True):
-            drag = jnp.sum((two @ x) ** 2) + SMALL
-            total += size * (0.5 * jnp.sum((one @ x) ** 2) + drag * jnp.sqrt(drag) / 3.0)
-        joints = 0.5 * self.viscous**2 * speed**2 + self.dry**2 * SLOW * _log_cosh(speed / SLOW)
-        return total + jnp.sum(power.astype(v.dtype) * joints)
-
     def __call__(self, q: Vector, v: Vector, a: Vector) -> Vector:
         """Torque at one sample, shape (dof,) [N m]; a is not looked at."""
-        return jax.lax.stop_gradient(self.shares) * jax.grad(self.dissipation, argnums=1)(q, v)
+        size = np.asarray(self.scales.velocity, v.dtype)
+        power = (np.asarray(self.scales.torque) * np.asarray(self.scales.velocity)).astype(v.dtype)
+        features = self.features(q)
+
+        def motion(speed: Vector) -> Array:
+            entries = tuple(self.axes * speed[:, None])
+            return jnp.stack(self.motion(features, jnp.zeros_like(self.axes[0]), entries))
+
+        x, virtual_work = jax.vjp(motion, v / size)
+        friction = self.viscous**2 * v / size + self.dry**2 * jnp.tanh(v / size / SLOW)
+        force = virtual_work(power[:, None] * self._drag(x))[0] + power * friction
+        return jax.lax.stop_gradient(self.shares) * force / size
+
+    def _drag(self, x: Array) -> Array:
+        """Wrench against the motion x of each body, both of shape (dof, rank)."""
+        wrench = _square(self.linear, x)
+        for seen, root in zip(self.speeds, self.quadratic, strict=True):
+            speed = jnp.sqrt(jnp.sum(_each(seen, x) ** 2, axis=1, keepdims=True) + SMALL)
+            wrench += speed * _square(root, x)
+        return wrench
 
     def scaled(self, shares: np.ndarray) -> DissipationNetwork:
         """The same with the torque of each joint times its share, shape (dof,)."""
         return eqx.tree_at(lambda x: x.shares, self, self.shares * shares.astype(self.shares.dtype))
 
 
-def _log_cosh(x: Array) -> Array:
-    """ln cosh x without overflow, whose slope is tanh x."""
-    return jax.nn.softplus(2.0 * x) - x - np.log(2.0)
+def _each(matrices: Array, x: Array) -> Array:
+    """Each body's matrix times its motion."""
+    return jnp.einsum("nij,nj->ni", matrices, x)
+
+
+def _square(roots: Array, x: Array) -> Array:
+    """RᵀR x of each body."""
+    return jnp.einsum("nji,nj->ni", roots, _each(roots, x))
 
 
 def make_dissipation(
@@ -91,13 +109,14 @@ def make_dissipation(
 ) -> DissipationNetwork:
     """Draw an untrained network that takes little."""
     n, rank = len(features.joint_types), settings.rank
-    keys, size = jax.random.split(key, 4), 0.3 / (np.sqrt(n) * rank)
+    keys, size = jax.random.split(key, 5), 0.3 / (np.sqrt(n) * rank)
     small, one = 0.1 * jnp.ones(n), jnp.ones(n)
     return DissipationNetwork(
         motion=make_chain_network(keys[0], features.owner, n, rank),
         axes=jax.random.normal(keys[1], (n, rank)),
         linear=size * jax.random.normal(keys[2], (n, rank, rank)),
-        cubic=size * jax.random.normal(keys[3], (n, rank, rank)),
+        speeds=0.3 / np.sqrt(rank) * jax.random.normal(keys[3], (DRAGS, n, rank, rank)),
+        quadratic=size * jax.random.normal(keys[4], (DRAGS, n, rank, rank)),
         viscous=small,
         dry=small,
         shares=one,
