@@ -84,6 +84,14 @@ def test_the_mapping_that_is_told_mends_it(case, plant, arm, at, tmp_path, capsy
     np.testing.assert_allclose(mapped.q, plant(at(1, friction)).record(1).q, atol=1e-5)
 
 
+def test_a_load_that_turns_the_torque_of_the_last_joint_round_is_no_convention(plant, arm) -> None:
+    body = arm.inertial_parameters()[2]
+    for times in (-1.5, -2.0, 12.0):
+        moment = times * body[1:4]
+        loaded = arm.with_payload(1.0, moment, 1e-3 * np.eye(3))
+        refuse_other_conventions(pose_problem(arm, *(condition([plant(robot=loaded).record(s)], 8.0) for s in (1, 2))))
+
+
 def test_physics_is_no_convention(plant, arm, at) -> None:
     ceiling, wall = (arm.with_gravity(np.array(g)) for g in ((0.0, 0.0, 9.81), (9.81, 0.0, 0.0)))
     heavy = arm.with_payload(5.0, np.array([0.1, 0.1, 0.2]), 0.02 * np.eye(3))

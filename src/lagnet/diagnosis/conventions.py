@@ -25,7 +25,7 @@ MISFIT = 0.5  # of some joint's torque power: only then is a convention looked f
 LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
 MENDED = 0.15  # of that misfit may be left, or the convention is not what is wrong
 ALIKE = 0.95  # correlation of recorded and nominal torque that are the same but for a factor
-BETTER = 0.5  # of what the arm on a wall or ceiling leaves: a convention must leave less to be held for the cause
+BETTER = 0.5  # of what a mounting and a load leave: a convention must leave less to be held for the cause
 SCALES = (0.2, 5.0)  # factors that a wrong torque constant may have
 SAMPLES = 1500
 RIGHT_ANGLES = (0.0, np.pi / 2, np.pi, -np.pi / 2)
@@ -42,8 +42,7 @@ class Reading:
 
     def apply(self, motion: Motion) -> Motion:
         """The motion and its recorded torque as read so."""
-        assert motion.recorded is not None
-        q, v, a, tau = (x.copy() for x in (motion.q, motion.v, motion.a, motion.recorded))
+        q, v, a, tau = (x.copy() for x in (motion.q, motion.v, motion.a, _recorded(motion)))
         q[:, self.joint] = self.turn * q[:, self.joint] + self.zero
         for x, sign in ((v, self.turn), (a, self.turn), (tau, self.sense)):
             x[:, self.joint] *= sign
@@ -65,10 +64,11 @@ def refuse_other_conventions(problem: Problem) -> None:
     motion = _few(problem.summary())
     if _misfit(problem, motion).max() < MISFIT:
         return
-    _refuse_scales(problem, motion)
-    _refuse_other_order(problem, motion)
+    most = BETTER * _left_by_physics(problem, motion)
+    _refuse_scales(problem, motion, most)
+    _refuse_other_order(problem, motion, most)
     readings, left = _readings(problem, motion)
-    if readings and left < BETTER * _misfit(_mounted(problem), motion).sum():
+    if readings and left < most:
         lines = [line for r in readings for line in r.mapping(problem.joints[r.joint])]
         joints = ", ".join(dict.fromkeys(problem.joints[r.joint] for r in readings))
         raise DiagnosisError(
@@ -78,27 +78,36 @@ def refuse_other_conventions(problem: Problem) -> None:
 
 
 def _few(motion: Motion) -> Motion:
-    assert motion.recorded is not None
     rows = slice(None, None, max(1, motion.time.size // SAMPLES))
     time, q, v, a, load, recorded = (
-        x[rows] for x in (motion.time, motion.q, motion.v, motion.a, motion.load, motion.recorded)
+        x[rows] for x in (motion.time, motion.q, motion.v, motion.a, motion.load, _recorded(motion))
     )
     return replace(motion, time=time, q=q, v=v, a=a, load=load, recorded=recorded, cache={})
 
 
-def _torques(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Recorded and nominal torque of each joint less what the joint may add, over what of the recorded is left."""
-    assert motion.recorded is not None
-    model = torque_along(problem.nominal, motion.time, motion.q, motion.v, motion.a)
-    both = np.stack([motion.recorded, model], axis=2)
-    least = LEAST * motion.recorded.std(axis=0)
+def _beside_own(motion: Motion, signals: np.ndarray) -> np.ndarray:
+    """Signals of shape (n, dof, k), the recorded torque first, less what each joint may add itself, over what is left
+    of the recorded one."""
+    signals, least = signals.copy(), LEAST * signals[..., 0].std(axis=0)
     for j in range(motion.n_dof):
         v = motion.v[:, j]
         own = np.column_stack([np.ones_like(v), np.tanh(v / motion.slow[j]), v, motion.a[:, j]])
         own, _ = np.linalg.qr(own / np.maximum(np.linalg.norm(own, axis=0), 1e-12))
-        both[:, j] -= own @ (own.T @ both[:, j])
-        both[:, j] /= max(float(both[:, j, 0].std()), float(least[j]), 1e-12)
-    return both[..., 0], both[..., 1]
+        signals[:, j] -= own @ (own.T @ signals[:, j])
+        signals[:, j] /= max(float(signals[:, j, 0].std()), float(least[j]), 1e-12)
+    return signals
+
+
+def _torques(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Recorded and nominal torque beside what each joint may add, shapes (n, dof)."""
+    model = torque_along(problem.nominal, motion.time, motion.q, motion.v, motion.a)
+    recorded, model = np.moveaxis(_beside_own(motion, np.stack([_recorded(motion), model], axis=2)), 2, 0)
+    return recorded, model
+
+
+def _recorded(motion: Motion) -> np.ndarray:
+    assert motion.recorded is not None
+    return motion.recorded
 
 
 def _misfit(problem: Problem, motion: Motion) -> np.ndarray:
@@ -107,8 +116,25 @@ def _misfit(problem: Problem, motion: Motion) -> np.ndarray:
     return np.mean((recorded - model) ** 2, axis=0)
 
 
+def _left_by_physics(problem: Problem, motion: Motion) -> float:
+    """Misfit of all joints with the arm mounted as torque asks for and any body on its last link.
+
+    A load turns the torque of a light wrist round as well as a wrong sign does.
+    """
+    turned = _mounted(problem)
+    if not hasattr(turned.nominal, "link_regressor"):
+        return float(_misfit(turned, motion).sum())
+    model = torque_along(turned.nominal, motion.time, motion.q, motion.v, motion.a)
+    body = turned.nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
+    recorded = _recorded(motion)
+    signals = _beside_own(motion, np.concatenate([recorded[..., None], (recorded - model)[..., None], body], axis=2))
+    columns, rest = signals[..., 2:].reshape(-1, body.shape[2]), signals[..., 1].ravel()
+    fitted, *_ = np.linalg.lstsq(columns, rest, rcond=1e-9)
+    return float(np.sum((rest - columns @ fitted) ** 2)) / len(motion.time)
+
+
 def _mounted(problem: Problem) -> Problem:
-    """The problem with the arm on the wall or ceiling that torque asks for, which is physics and no convention."""
+    """The problem with the arm on the wall or ceiling that torque asks for, if it asks for one."""
     mounting = mounting_of(problem)
     if not mounting:
         return problem
@@ -126,15 +152,14 @@ def _likeness(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]
     return products / np.sqrt(np.outer(*sizes)), products / sizes[1]
 
 
-def _refuse_other_order(problem: Problem, motion: Motion) -> None:
+def _refuse_other_order(problem: Problem, motion: Motion, most: float) -> None:
     alike, _ = _likeness(problem, motion)
     of_file, of_model = linear_sum_assignment(-alike)
     moved = [j for j, k in zip(of_file, of_model, strict=True) if j != k]
-    if not moved or motion.recorded is None:
-        return
-    ordered = motion.recorded.copy()
-    ordered[:, of_model] = motion.recorded
-    if _misfit(problem, replace(motion, recorded=ordered)).sum() < MENDED * _misfit(problem, motion).sum():
+    ordered = _recorded(motion).copy()
+    ordered[:, of_model] = _recorded(motion)
+    left = float(_misfit(problem, replace(motion, recorded=ordered)).sum())
+    if moved and left < min(most, MENDED * _misfit(problem, motion).sum()):
         told = ", ".join(f"tau_{problem.joints[j]} is the torque of {problem.joints[of_model[j]]}" for j in moved)
         raise DiagnosisError(
             f"columns of torque are in another order than the model's joints: {told}",
@@ -142,10 +167,11 @@ def _refuse_other_order(problem: Problem, motion: Motion) -> None:
         )
 
 
-def _refuse_scales(problem: Problem, motion: Motion) -> None:
+def _refuse_scales(problem: Problem, motion: Motion, most: float) -> None:
     alike, factor = (np.diag(x) for x in _likeness(problem, motion))
     off = (alike > ALIKE) & ((factor < SCALES[0]) | (factor > SCALES[1]))
-    if off.any():
+    scaled = replace(motion, recorded=_recorded(motion) / np.where(off, factor, 1.0))
+    if off.any() and _misfit(problem, scaled).sum() < most:
         told = ", ".join(f"{float(f'{factor[j]:.2g}'):g} at {problem.joints[j]}" for j in np.flatnonzero(off))
         raise DiagnosisError(
             f"recorded torques are far from the model's by a factor: {told}",
