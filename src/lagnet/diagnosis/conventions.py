@@ -18,6 +18,7 @@ from lagnet.diagnosis.problem import Problem
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
+from lagnet.effects.own_terms import beside_own_terms
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected import torque_along
 
@@ -90,10 +91,7 @@ def _beside_own(motion: Motion, signals: np.ndarray) -> np.ndarray:
     of the recorded one."""
     signals, least = signals.copy(), LEAST * signals[..., 0].std(axis=0)
     for j in range(motion.n_dof):
-        v = motion.v[:, j]
-        own = np.column_stack([np.ones_like(v), np.tanh(v / motion.slow[j]), v, motion.a[:, j]])
-        own, _ = np.linalg.qr(own / np.maximum(np.linalg.norm(own, axis=0), 1e-12))
-        signals[:, j] -= own @ (own.T @ signals[:, j])
+        signals[:, j] = beside_own_terms(motion, j, signals[:, j])
         signals[:, j] /= max(float(signals[:, j, 0].std()), float(least[j]), 1e-12)
     return signals
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.effects.motion import Motion
+from lagnet.effects.own_terms import beside_own_terms
 
 DOWN = np.array([0.0, 0.0, -1.0])  # gravity in the level frame
 STARTS = (DOWN, -DOWN, *np.eye(3)[:2], *-np.eye(3)[:2])
@@ -90,10 +91,8 @@ def _beside_joint_terms(table: np.ndarray, motion: Motion) -> np.ndarray:
     assert motion.recorded is not None
     products = np.zeros((table.shape[2] + 1,) * 2)
     for j in range(motion.n_dof):
-        v, size = motion.v[:, j], max(float(np.std(motion.recorded[:, j])), 1e-12)
-        own = np.column_stack([np.ones_like(v), np.tanh(v / motion.slow[j]), v, motion.a[:, j]])
-        own, _ = np.linalg.qr(own / np.maximum(np.linalg.norm(own, axis=0), 1e-12))
+        size = max(float(np.std(motion.recorded[:, j])), 1e-12)
         both = np.column_stack([table[:, j], motion.recorded[:, j] - motion.load[:, j]]) / size
-        both -= own @ (own.T @ both)
+        both = beside_own_terms(motion, j, both)
         products += both.T @ both / len(both)
     return products
