@@ -33,7 +33,10 @@ def friction(q, v, a, body):
 
 OTHERWISE = {
     "sense of torque": ({"sense": -1.0}, ['"tau_joint_1" = -1']),
-    "sense of rotation": ({"turn": -1.0, "sense": -1.0}, ['"q_joint_1" = -1', '"tau_joint_1" = -1']),
+    "sense of rotation": (
+        {"turn": -1.0, "sense": -1.0},
+        ['"q_joint_1" = -1', '"v_joint_1" = -1', '"tau_joint_1" = -1'],
+    ),
     "zero": ({"zero": np.pi / 2}, ['"q_joint_1" = -1.5708']),
     "motor side": ({"sense": 0.01}, ["by a factor: 0.0", " at joint_1; ", '"tau_joint_1" = ']),
 }

@@ -51,7 +51,7 @@ class Reading:
 
     def mapping(self, name: str) -> list[str]:
         """Lines of a mapping file that read it so."""
-        lines = [f'[scale] "q_{name}" = -1'] if self.turn < 0 else []
+        lines = [f'[scale] "{kind}_{name}" = -1' for kind in ("q", "v", "a") if self.turn < 0]
         lines += [f'[offset] "q_{name}" = {self.zero:.6g}'] if self.zero else []
         return lines + ([f'[scale] "tau_{name}" = -1'] if self.sense < 0 else [])
 
