@@ -11,7 +11,9 @@ from lagnet.cli.main import main
 from lagnet.diagnosis.conventions import refuse_other_conventions
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.problem import pose_problem
+from lagnet.effects.catalogue import CATALOGUE
 from lagnet.errors import DiagnosisError
+from lagnet.models.corrected import CorrectedModel, NamedEffect
 from lagnet.recordings.conditioning import condition
 from lagnet.recordings.load import load_recording
 from lagnet.recordings.recording import Recording
@@ -110,3 +112,15 @@ def test_physics_is_no_convention(plant, arm, at) -> None:
         plant(at(1, lambda q, v, a, body: 60.0 * q)),
     ):
         refuse_other_conventions(pose_problem(arm, *(condition([real.record(seed)], 8.0) for seed in (1, 2))))
+
+
+@pytest.mark.parametrize("effect", CATALOGUE)
+def test_a_calibrated_model_with_any_effect_is_no_convention_in_several_recordings(effect, plant, arm) -> None:
+    recordings = [plant().record(seed) for seed in (1, 2)]
+    posed = pose_problem(arm, *(condition(recordings, 8.0) for _ in range(2)))
+    law = CATALOGUE[effect]
+    values = {p.name: float(np.clip(0.02, p.lower, p.upper)) for p in law.parameters}
+    model = CorrectedModel(arm, (NamedEffect(effect, None if law.whole_arm else 1, values),), posed.slow)
+    for told in (None, (0.1, 12.0)):
+        spell = replace(model, effects=tuple(replace(e, interval=told) for e in model.effects))
+        refuse_other_conventions(pose_problem(spell, *(condition(recordings, 8.0) for _ in range(2))))

@@ -20,7 +20,6 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.effects.own_terms import beside_own_terms
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected import torque_along
 
 MISFIT = 0.5  # of some joint's torque power: only then is a convention looked for
 LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
@@ -97,8 +96,11 @@ def _beside_own(motion: Motion, signals: np.ndarray) -> np.ndarray:
 
 
 def _torques(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Recorded and nominal torque beside what each joint may add, shapes (n, dof)."""
-    model = torque_along(problem.nominal, motion.time, motion.q, motion.v, motion.a)
+    """Recorded and nominal torque beside what each joint may add, shapes (n, dof).
+
+    The samples are of several recordings and stand for themselves: what a model remembers is left out.
+    """
+    model = problem.nominal.inverse_dynamics(motion.q, motion.v, motion.a)
     recorded, model = np.moveaxis(_beside_own(motion, np.stack([_recorded(motion), model], axis=2)), 2, 0)
     return recorded, model
 
@@ -122,7 +124,7 @@ def _left_by_physics(problem: Problem, motion: Motion) -> float:
     turned = _mounted(problem)
     if not hasattr(turned.nominal, "link_regressor"):
         return float(_misfit(turned, motion).sum())
-    model = torque_along(turned.nominal, motion.time, motion.q, motion.v, motion.a)
+    model = turned.nominal.inverse_dynamics(motion.q, motion.v, motion.a)
     body = turned.nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
     recorded = _recorded(motion)
     signals = _beside_own(motion, np.concatenate([recorded[..., None], (recorded - model)[..., None], body], axis=2))
