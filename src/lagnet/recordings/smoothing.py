@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, sosfiltfilt
@@ -21,9 +23,14 @@ def low_pass(x: np.ndarray, rate: float, bandwidth: float) -> np.ndarray:
     """
     if bandwidth >= 0.45 * rate or x.shape[0] < SHORTEST:
         return x
-    sections = butter(ORDER, bandwidth, fs=rate, output="sos")
     pad = min(x.shape[0] - 1, max(3 * (2 * ORDER + 1), int(2.0 * rate / bandwidth)))
-    return sosfiltfilt(sections, x, axis=0, padlen=pad)
+    return sosfiltfilt(_sections(rate, bandwidth), x, axis=0, padlen=pad)
+
+
+@lru_cache(maxsize=64)
+def _sections(rate: float, bandwidth: float) -> np.ndarray:
+    """The filter's second-order sections; a diagnosis asks for the same few thousands of times."""
+    return np.asarray(butter(ORDER, bandwidth, fs=rate, output="sos"))
 
 
 def even_clock(time: np.ndarray, rate: float) -> np.ndarray:
