@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("JAX_NUM_CPU_DEVICES", "1")  # before JAX: else the first `lagnet train` would change it for all
 STRICT = os.environ.get("LAGNET_TEST_STRICT") == "1"  # set in CI: a missing browser or data set fails the run
 DEFAULT_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 

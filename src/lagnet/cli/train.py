@@ -34,6 +34,9 @@ def command(
     joint_types: Annotated[
         str | None, typer.Option(help="Comma-separated: continuous, revolute or prismatic for each joint.")
     ] = None,
+    cores: Annotated[
+        int | None, typer.Option(min=1, help="Processor cores to train on; the same number gives the same model again.")
+    ] = None,
     penalty: Annotated[
         float | None, typer.Option(help="λ of eq. 12: trains mechanics and ε of delan-ffnn together, not in stages.")
     ] = None,
@@ -41,9 +44,11 @@ def command(
     """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
     from lagnet.cli.console import say
     from lagnet.recordings.load import load_recording
+    from lagnet.training.cores import let_jax_see_cores
     from lagnet.training.stages import stage_files
     from lagnet.training.train import train
 
+    let_jax_see_cores(cores)
     read = [load_recording(path, columns=columns) for path in recordings]
     judged = [load_recording(path, columns=columns) for path in holdout or []]
     types = tuple(name.strip() for name in joint_types.split(",")) if joint_types else None

@@ -115,7 +115,7 @@ class _Run:
         self.loop: Loop = make_loop(
             dynamics, jnp.asarray(variance, jnp.float32), len(task.samples), task.settings, task.seed, trainable
         )
-        self.data = _on_device(task.samples.arrays)
+        self.data = self.loop.place(_on_device(task.samples.arrays))
         self.train_probe, self.held_probe = _probe(task.samples), _probe(task.held_out)
         self.standing = self._resumed()
         self.saved_at: float = self.began

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -13,6 +14,7 @@ from jaxtyping import Array
 
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.networks import OrderedNetwork
+from lagnet.training.cores import everywhere, mesh_for, on_one_device, spread
 from lagnet.training.loss import Errors, errors, penalised
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.soap import scale_by_soap
@@ -39,12 +41,14 @@ class Loop(NamedTuple):
         advance: (state, data, λ, total steps) → (state after CHUNK steps, mean loss).
         judge: (params, data) → Errors.
         assemble: params → model.
+        place: data → data where `advance` works on it.
     """
 
     start: LoopState
     advance: Callable[..., tuple[LoopState, Array]]
     judge: Callable[..., Errors]
     assemble: Callable[[Any], AbstractDynamics]
+    place: Callable[[Any], Any]
 
 
 def make_loop(
@@ -63,16 +67,19 @@ def make_loop(
     params, fixed = eqx.partition(dynamics, trainable)
     direction = _direction(settings.optimiser)
     batch = min(settings.batch, n_samples)
+    mesh = mesh_for(batch)
 
-    def loss(params: Any, rows: tuple[Array, ...], penalty: Array) -> Array:
-        return penalised(errors(eqx.combine(params, fixed), rows, variance), penalty)
+    def loss(params: Any, data: tuple[Array, ...], rows: Array, penalty: Array) -> Array:
+        return penalised(errors(eqx.combine(params, fixed), tuple(x[rows] for x in data), variance), penalty)
+
+    gradient = spread(jax.value_and_grad(loss), mesh)
 
     def advance(state: LoopState, data: tuple[Array, ...], penalty: Array, total: Array) -> tuple[LoopState, Array]:
         key, subkey = jax.random.split(state.key)
 
         def step(carry: tuple[Any, Any, Array], rows: Array) -> tuple[tuple[Any, Any, Array], Array]:
             params, memory, count = carry
-            value, grads = jax.value_and_grad(loss)(params, tuple(x[rows] for x in data), penalty)
+            value, grads = gradient(params, data, rows, penalty)
             updates, memory = direction.update(grads, memory, params)
             rate = _rate(count, total, settings)
             params = jax.tree.map(lambda p, u: p - rate * u, _shrunk(params, rate * settings.weight_decay), updates)
@@ -84,7 +91,8 @@ def make_loop(
 
     start = LoopState(params, direction.init(params), jax.random.key(seed), jnp.zeros((), jnp.int32))
     judge = jax.jit(lambda params, data: errors(eqx.combine(params, fixed), data, variance))
-    return Loop(start, jax.jit(advance), judge, lambda params: eqx.combine(params, fixed))
+    place = partial(everywhere, mesh=mesh)
+    return Loop(start, jax.jit(advance), judge, lambda params: eqx.combine(on_one_device(params), fixed), place)
 
 
 def _shuffled(key: Array, n_samples: int, batch: int) -> Array:

@@ -23,6 +23,7 @@ from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
 from lagnet.training import serial_chain
 from lagnet.training.checkpoint import fingerprint
+from lagnet.training.cores import parts_of
 from lagnet.training.fit import Fitted, Task, fit
 from lagnet.training.history import History, Report
 from lagnet.training.samples import TrainingSamples, samples_of
@@ -66,7 +67,7 @@ def train(
     Args:
         recordings: motion and torque; v and a are derived where they are missing.
         model: kind of model, a name in `lagnet.models.kinds.KINDS`.
-        seed: of initial weights and shuffling; the same seed, data and steps give the same model.
+        seed: of initial weights and shuffling; the same seed, data, steps and number of devices give the same model.
         holdout: recordings to judge by; None for the last fifth of each of `recordings`.
         minutes: wall-clock limit; with one, the number of steps depends on the machine.
         settings: settings dataclass of the kind, None for its defaults.
@@ -146,6 +147,7 @@ def _stats(spec: ModelSpec, task: Task, fitted: Fitted, penalty: float | None, s
         "kept_step": fitted.history.kept_step,
         "stopped_early": fitted.history.stopped_early,
         "interrupted": fitted.history.interrupted,
+        "devices": parts_of(min(task.settings.batch, len(task.samples))),
         "samples": len(task.samples),
         "samples_sha256": task.samples.sha256(),
         "held_out_samples": len(task.held_out),
