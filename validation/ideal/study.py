@@ -46,10 +46,10 @@ PLAN = {
     "delan": Plan("delan", 5),
     "delan-ffnn": Plan("delan-ffnn", 5),
     DISSIPATION: Plan(
-        "delan-ffnn", 2, TrainingSettings(separation="joint", penalty=0.0), AugmentedSettings(form="dissipation")
+        "delan-ffnn", 5, TrainingSettings(separation="joint", penalty=0.0), AugmentedSettings(form="dissipation")
     ),
-    "delan-blackbox": Plan("delan-blackbox", 1, settings=SETTINGS["delan-blackbox"]),
-    "ffnn": Plan("ffnn", 2),
+    "delan-blackbox": Plan("delan-blackbox", 5, settings=SETTINGS["delan-blackbox"]),
+    "ffnn": Plan("ffnn", 5),
 }
 AUGMENTED = ("delan-ffnn", DISSIPATION)
 NEURAL = {"joint_types": ("continuous",) * 6}
