@@ -1,0 +1,1 @@
+"""Plants of another simulator than the one that all else here is tried on."""
