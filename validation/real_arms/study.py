@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 from validation.real_arms.arms import EMPS, EMPS_WHOLE, TX40, UR10E, Arm
-from validation.real_arms.metric import low_passed, nmse, read_torques, stretches
+from validation.real_arms.metric import at_rest, low_passed, nmse, read_torques, stretches
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import write_diagnosis
 from lagnet.models.loading import load_any
 from lagnet.recordings.load import load_recording
+from lagnet.recordings.recording import Recording
 
 HERE = Path(__file__).resolve().parent
 QUICK, ALL = (EMPS, EMPS_WHOLE, TX40), (EMPS, EMPS_WHOLE, TX40, UR10E)
@@ -48,10 +49,20 @@ def study_arm(arm: Arm, data: Path, out: Path) -> dict[str, Any]:
         "bandwidth_hz": verdict["conditioning"]["bandwidth_hz"],
         "nmse_nominal": [round(nmse(table, j, "nominal"), 5) for j in joints],
         "nmse_corrected": [round(x, 5) for x in corrected],
+        **_at_rest(table, read[1], len(joints)),
         "effects": [_short(e) for e in verdict["effects"]],
         "unexplained": [u for u in verdict["unexplained"] if u["above_noise"]],
         "lines": [asdict(line) for line in arm.judge(verdict, corrected)],
     }
+
+
+def _at_rest(table: dict[str, np.ndarray], held_out: list[Recording], n_dof: int) -> dict[str, Any]:
+    """What rest has of the error and the error in motion; only where one recording is held out whole."""
+    if len(held_out) != 1:
+        return {}
+    pairs = [at_rest(table, j, "corrected", held_out[0]) for j in range(n_dof)]
+    shares, moving = ([round(x, 5) for x in part] for part in zip(*pairs, strict=True))
+    return {"share_of_error_at_rest": shares, "nmse_in_motion": moving}
 
 
 def _short(effect: dict[str, Any]) -> dict[str, Any]:
