@@ -49,7 +49,7 @@ def test_every_effect_that_is_drawn_is_in_the_catalogue() -> None:
     assert set(SIZES) == {*ALONE, *UNLISTED}
 
 
-BY_SENSOR = ("torque_gain", "torque_offset", "encoder_offset", "time_delay")
+BY_SENSOR = ("saturation", "torque_gain", "torque_offset", "encoder_offset", "time_delay")
 
 
 @pytest.mark.parametrize("effect", [e for e in SIZES if e not in BY_SENSOR])

@@ -89,7 +89,7 @@ class MujocoArm:
                 summed += (target[0] - q) * STEP * CONTROL
                 asked = nominal.torque(*target) + stiff * (target[0] - q + INTEGRAL * summed) + damp * (target[1] - v)
             data.qfrc_applied[:] = 0.0
-            data.qfrc_applied[self.at_v] = self._limited(asked) - self._lost(q, v)
+            data.qfrc_applied[self.at_v] = asked - self._lost(q, v)
             self._pushed(now / seconds)
             if i % every == 0:
                 rows.append((now, q, v, asked.copy()))
@@ -97,13 +97,6 @@ class MujocoArm:
             if not np.all(np.abs(data.qvel) < RUNAWAY):
                 raise CameApartError(f"at {now:.2f} s")
         return Written(*(np.array(column) for column in zip(*rows, strict=True)))
-
-    def _limited(self, asked: np.ndarray) -> np.ndarray:
-        for cause in self.hidden:
-            if cause.effect == "saturation":
-                most, asked = cause.values["most"], asked.copy()
-                asked[cause.joint] = np.clip(asked[cause.joint], -most, most)
-        return asked
 
     def _lost(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Torque that causes without a part of their own in MuJoCo take, shape (dof,)."""

@@ -130,6 +130,8 @@ def _sensed(
                 tau[:, j] += values["b"]
             case "encoder_offset":
                 q[:, j] += values["dq"]
+            case "saturation":
+                tau[:, j] = np.clip(tau[:, j], -values["most"], values["most"])
             case "time_delay":
                 tau[:, j] = np.interp(time - values["T"], time, tau[:, j])
     tau += scatter * rng.standard_normal(tau.shape)
