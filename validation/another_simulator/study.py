@@ -32,7 +32,7 @@ CODE = fingerprint()
 def scored(case: Plant, result: Diagnosis) -> dict[str, Any]:
     """Which claims are right, and which causes were found."""
     listed = [h for h in case.hidden if h.effect not in UNLISTED]
-    right = [any(_says(e, h, case.robot.joints) for h in listed) for e in result.effects]
+    right = [any(_says(e, h, case.robot.joints) or _is_its_rotor(e, h, case) for h in listed) for e in result.effects]
     found = [any(_says(e, h, case.robot.joints) for e in result.effects) for h in listed]
     return {
         "plant": case.name,
@@ -50,9 +50,13 @@ def _says(claim: Any, cause: Hidden, joints: Sequence[str]) -> bool:
     """Whether a claim, with at most two ties beside it, names a cause at its joint."""
     names = {claim.effect, *(t.split(" ")[0].split("@")[0] for t in claim.tied_with)}
     place = None if cause.joint is None else joints[cause.joint]
-    flex_rotor = cause.effect == "joint_elasticity" and claim.effect == "rotor_inertia"  # both are put in
-    named = (cause.effect in names and len(names) <= MOST_TIED) or flex_rotor
-    return named and (place is None or claim.joint in (place, None))
+    return cause.effect in names and len(names) <= MOST_TIED and (place is None or claim.joint in (place, None))
+
+
+def _is_its_rotor(claim: Any, cause: Hidden, case: Plant) -> bool:
+    """Whether a claim is the rotor before a flexible joint, which is put in with it: right, but not the flexibility."""
+    flexible = cause.effect == "joint_elasticity" and cause.joint is not None
+    return flexible and claim.effect == "rotor_inertia" and claim.joint == case.robot.joints[cause.joint or 0]
 
 
 def run(plants: int, seed: int, seconds: float) -> dict[str, Any]:
