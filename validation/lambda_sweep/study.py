@@ -40,7 +40,7 @@ def run(quick: bool) -> dict[str, Any]:
 
 
 def _point(penalty: float, found: dict[str, Any]) -> dict[str, Any]:
-    means = {term: _mean(found["median"][term]) for term in ("torque", "inertial", "coriolis", "gravity")}
+    means = {term: _mean(found["errors"][term]) for term in ("torque", "inertial", "coriolis", "gravity")}
     spent = {name: found[name] for name in ("steps", "cpu_seconds")}
     return {"penalty": penalty, **means, "epsilon": _mean(found["residual_share"]), **spent}
 

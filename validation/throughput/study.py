@@ -132,7 +132,7 @@ def run(quick: bool) -> dict[str, Any]:
     out: dict[str, Any] = {"cores": os.cpu_count(), "load": os.getloadavg()[0]}
     out["matrix_flops"] = matrix_rate(1024, 1024, 1024, repeats)
     out["ceiling"] = ceiling(20 * repeats)
-    for kind in KINDS:
+    for kind in ("delan-perceptron",) if quick else KINDS:
         double = LearnedModel(*made(kind))
         both = {"double": double, "single": double.in_single_precision()}
         steps = paired_times(*step_calls(kind), 5 * repeats)
