@@ -22,6 +22,7 @@ from jaxtyping import Array
 ROWS = "rows"
 FLAG = "xla_force_host_platform_device_count"
 LEAST = 128  # rows of a batch that are worth a device of their own
+MOST = 8  # cores that are taken without being asked for: usual batches have no more such parts
 
 Gradient = Callable[[Any, tuple[Array, ...], Array, Array], tuple[Array, Any]]
 """(params, data, rows, λ) → loss and gradient over these rows of the data."""
@@ -31,7 +32,8 @@ def let_jax_see_cores(cores: int | None = None) -> int:
     """Makes cores of the processor into devices of JAX; to be called before JAX computes anything.
 
     Args:
-        cores: how many; None for as many as this process may use, unless the environment says (JAX_NUM_CPU_DEVICES).
+        cores: how many; None for those that this process may use, MOST at most, unless the environment says
+            (JAX_NUM_CPU_DEVICES).
 
     Returns:
         The number of devices that there are now: what it was where JAX is in use already.
@@ -39,7 +41,7 @@ def let_jax_see_cores(cores: int | None = None) -> int:
     said = "JAX_NUM_CPU_DEVICES" in os.environ or FLAG in os.environ.get("XLA_FLAGS", "")
     if cores is not None or not said:
         with suppress(RuntimeError):  # JAX is in use: what it has stays
-            jax.config.update("jax_num_cpu_devices", cores or usable_cores())
+            jax.config.update("jax_num_cpu_devices", cores or min(usable_cores(), MOST))
     return len(jax.local_devices())
 
 
