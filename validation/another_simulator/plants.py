@@ -13,7 +13,7 @@ from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm_urdf
 from lagnet.rigid_body.robot import Robot, load_description
 from validation.another_simulator import motions
-from validation.another_simulator.hidden import ALONE, BESIDE, NEEDS_TORQUE, UNLISTED, WHOLE_ARM, Hidden, Usual, drawn
+from validation.another_simulator.hidden import ALONE, BESIDE, NEEDS_TORQUE, UNLISTED, Hidden, Usual, drawn
 from validation.another_simulator.mujoco_arm import CameApartError, MujocoArm, Reference, Written
 
 KINDS = (*ALONE, "nothing", *UNLISTED, "nothing")
@@ -140,6 +140,3 @@ def _sensed(
     return Recording(
         time[keep], step * np.round(q[keep] / step), tau[keep], joints, v=None if seen is None else seen[keep]
     )
-
-
-assert set(WHOLE_ARM) <= set(ALONE)
