@@ -9,9 +9,11 @@ from tests.diagnosis.posed import pose
 from lagnet.diagnosis.refit import refit
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import NamedEffect
+from lagnet.reports.wording import NOT_SAID
 from lagnet.rigid_body.inertia import is_physically_consistent
 
 LINKS = (0, 1, 2)
+ROTOR = 0.5  # [kg m²]
 IMPOSSIBLE = -3.0  # times the rotational inertia of each link is added
 
 
@@ -39,3 +41,33 @@ def test_no_body_is_given_that_no_mass_has(posed, arm, links) -> None:
     assert [e.joint for e in found] == list(links)
     assert is_physically_consistent(after).all()
     assert not np.allclose(after, bodies[list(links)], rtol=1e-3)
+
+
+@pytest.fixture(scope="module")
+def rotor(plant, arm):
+    """A plant whose first joint has inertia that the model lacks."""
+
+    def law(q, v, a, body):
+        out = np.zeros_like(q)
+        out[:, 0] = ROTOR * a[:, 0]
+        return out
+
+    real = plant(law)
+    return pose(arm, real.record(63), real.record(64))
+
+
+@pytest.mark.parametrize("extra", [0.0, 90.0])
+def test_what_recordings_leave_open_stays_near_the_model(rotor, arm, extra) -> None:
+    """The mass of the first link, that no motion of the arm shows, wherever the search put it."""
+    base = np.asarray(arm.inertial_parameters())[0]
+    start = np.zeros(10)
+    start[0] = extra
+    law = effect_named("link_inertia")
+    found = refit(rotor.problem, [NamedEffect("link_inertia", 0, law.from_coordinates(start))], rotor.noise)
+    change, told = found.effects[0].coordinates(), found.intervals[0]
+    assert is_physically_consistent(base + change)
+    assert abs(change[0]) < base[0]
+    open_ = {name for name, (low, high) in told.items() if high - low > 2.0 * NOT_SAID}
+    assert "dm" in open_
+    about = [told[name] for name in ("dIxx", "dIyy", "dIzz") if name not in open_]
+    assert any(low < ROTOR < high and high - low < 0.2 * ROTOR for low, high in about)

@@ -9,7 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
 
-from lagnet.reports.wording import breakable, effect_words, file_name, listed, number, percent, with_interval, wrapped
+from lagnet.reports.wording import (
+    breakable,
+    effect_words,
+    file_name,
+    interval,
+    listed,
+    number,
+    percent,
+    with_interval,
+    wrapped,
+)
 
 
 @pytest.mark.parametrize(
@@ -49,10 +59,16 @@ def test_percent(share, words):
         (12345.0, 12000.0, 12690.0, "12345 ± 345"),
         (5.0, 5.0, 5.0, "5.00"),
         (1e-8, 0.9e-8, 1.1e-8, "1.00·10⁻⁸ ± 1.0·10⁻⁹"),
+        (1.5, -2e6, 2e6, "not determined, taken as 1.50"),
     ],
 )
 def test_interval_sets_the_digits(value, low, high, words):
     assert with_interval(value, low, high) == words
+
+
+def test_parameters_that_recordings_leave_open_have_no_interval():
+    assert interval((1.2, 1.4)) == "1.200 … 1.400"
+    assert interval([-2e6, 2e6]) == "not determined"
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False, width=32), st.integers(1, 8))

@@ -166,7 +166,7 @@ SINGLE = (
         {
             "lagnet.diagnosis.fitting:memory_of": _value(1.0),
             "lagnet.diagnosis.arm_search:FIRST_MEMORY": _value(1.0),
-            "lagnet.diagnosis.refit:_Work.covariance": _white,
+            "lagnet.diagnosis.refit_work:Work.covariance": _white,
             "lagnet.diagnosis.passing:_caution": _value(1.0),
         },
     ),
@@ -183,8 +183,8 @@ SINGLE = (
         "joint refit",
         "parameters stay as the search found them, on its grid of shapes",
         {
-            "lagnet.diagnosis.refit:_Work.descend": lambda old: lambda work, x, free: x,
-            "lagnet.diagnosis.refit:_made_consistent": lambda old: lambda work, x: x,
+            "lagnet.diagnosis.refit_work:Work.descend": lambda old: lambda work, x, free: x,
+            "lagnet.diagnosis.refit:made_real": lambda old: lambda work, x: x,
         },
     ),
 )

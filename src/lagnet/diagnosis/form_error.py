@@ -18,7 +18,8 @@ from scipy.stats import t as student
 from lagnet.diagnosis.motion_parts import parts_of
 from lagnet.diagnosis.normal_equations import inverse, normal
 from lagnet.diagnosis.problem import Piece, Problem
-from lagnet.diagnosis.refit import Refit, Tangent, blocks_of, tangent_at
+from lagnet.diagnosis.refit import Refit, Tangent, tangent_at
+from lagnet.diagnosis.refit_work import blocks_of
 from lagnet.diagnosis.spells import set_aside, too_much
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected import EDGES, NamedEffect

@@ -1,4 +1,4 @@
-"""Bodies that masses can have, in the place of fitted ones that none has."""
+"""Bodies that masses can have, in the place of fitted ones that none has or that the data leave open."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.n
     """The likeliest real body whose torque is as near to that of the wanted parameters as any's, shape (10,).
 
     Of the bodies that data tell from the nearest one no better than chance, the one closest to the model is taken:
-    small moments that noise leaves open would else ask for masses beyond reason. Where the data leave so much open that
-    the fit has no minimum in reach, negative principal values are cut off.
+    small moments that noise leaves open would else ask for masses beyond reason. Of wanted parameters that a body can
+    have only those move that the data leave open altogether. Where the data leave so much open that the fit has no
+    minimum in reach, negative principal values are cut off.
 
     Args:
         gram: shape (10, 10), squared error per change of parameters, in variances of the noise.
@@ -36,6 +37,8 @@ def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.n
     least = CONSISTENCY * max(float(wanted @ moment), 1e-12)
     try:
         nearest = fit_consistent(gram, moment, prior, weight=least)
+        if is_physically_consistent(wanted):
+            return nearest
         bound = _lost(gram, nearest - wanted) + WITHIN
         likely = (fit_consistent(gram, moment, prior, weight=least * more) for more in WEIGHTS)
         return next((body for body in likely if _lost(gram, body - wanted) <= bound), nearest)
@@ -58,8 +61,14 @@ def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
 
 
 def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """A real body near the wanted one: the modelled link, or a ball of the wanted mass where that is."""
+    """A real body near the wanted one: the modelled link made rounder, or a ball of the wanted mass where that is.
+
+    Models know the mass of a link better than its shape. Beside a slender link a body of its mass and of other moments
+    would be further off than one many times as heavy.
+    """
     if is_physically_consistent(base):
-        return base
+        body = pseudo_inertia(base)
+        body[:3, :3] += np.trace(body[:3, :3]) / 3.0 * np.eye(3)
+        return from_pseudo_inertia(body)
     mass = max(float(wanted[0]), 1e-3)
     return parameters_of_body(mass, wanted[1:4] / mass, 0.01 * mass * np.eye(3))

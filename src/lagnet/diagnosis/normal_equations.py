@@ -9,6 +9,8 @@ from scipy.optimize import lsq_linear
 
 RIDGE = 1e-9  # of a parameter's own power, for directions that the data leave open
 NOTHING = 1e-40  # of the largest power of a derivative: below it, a coordinate has no say
+OPEN = 1e-8  # of the power along a direction if nothing else moved: what is left below it, is rounding
+TURNED = 1e-6  # of a coordinate's square that lies in open directions: below it, it is not among them
 
 
 def power_of_all(residuals: Iterable[np.ndarray]) -> float:
@@ -30,6 +32,36 @@ def inverse(gram: np.ndarray) -> np.ndarray:
     return np.linalg.inv(scaled) * scale[:, None] * scale[None, :]
 
 
+def leaves_open(gram: np.ndarray, powers: np.ndarray) -> bool:
+    """Whether there are directions along which the residuals do not change.
+
+    Args:
+        gram: shape (k, k), where other coordinates were projected out.
+        powers: shape (k,), its diagonal if nothing else moved.
+    """
+    values, _, scale = _eigen(gram, powers)
+    return bool(np.any(values < OPEN) or np.any(scale == 0.0))
+
+
+def inverse_where_told(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inverse of a Gram matrix on the directions that it tells of, and the coordinates that others turn.
+
+    Returns:
+        shape (k, k), zero for coordinates without any say; and shape (k,), whether a coordinate is left open.
+    """
+    values, vectors, scale = _eigen(gram, np.diag(gram))
+    told = values >= OPEN
+    inner = (vectors[:, told] / values[told]) @ vectors[:, told].T
+    return inner * scale[:, None] * scale[None, :], np.sum(vectors[:, ~told] ** 2, axis=1) > TURNED
+
+
+def _eigen(gram: np.ndarray, powers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Eigenvalues and directions in coordinates of unit power, and their scale: zero for those without any say."""
+    scale = _scale(powers)
+    values, vectors = np.linalg.eigh(gram * scale[:, None] * scale[None, :] + np.diag(1.0 * (scale == 0.0)))
+    return values, vectors, scale
+
+
 def bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """The step x between bounds that minimises x' gram x / 2 − moment' x, shape (k,)."""
     scaled, scale = _scaled(gram)
@@ -40,9 +72,13 @@ def bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper:
     return lsq_linear(root, target, bounds=(low, high), method="bvls").x * scale
 
 
-def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    power = np.diag(gram)
-    scale = np.zeros(len(gram))  # a coordinate without any say, such as a sense of rotation, stays where it is
+def _scale(power: np.ndarray) -> np.ndarray:
+    scale = np.zeros(len(power))  # a coordinate without any say, such as a sense of rotation, stays where it is
     felt = power > max(NOTHING * float(np.max(power, initial=0.0)), 1e-200)
     scale[felt] = 1.0 / np.sqrt(power[felt])
+    return scale
+
+
+def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    scale = _scale(np.diag(gram))
     return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale

@@ -8,7 +8,8 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.fitting import Workbench
 from lagnet.diagnosis.library import Library
 from lagnet.diagnosis.problem import Problem
-from lagnet.diagnosis.refit import Refit, refit, spread
+from lagnet.diagnosis.refit import Refit, refit
+from lagnet.diagnosis.refit_work import spread
 from lagnet.diagnosis.search import LEAST_OF_ALL, LEAST_TORQUE
 from lagnet.diagnosis.settle import without
 from lagnet.effects.catalogue import effect_named

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.problem import Problem
-from lagnet.diagnosis.refit import spread
+from lagnet.diagnosis.refit_work import spread
 from lagnet.models.corrected import NamedEffect, torque_with
 
 FEW = 20  # resting samples below which nothing is said

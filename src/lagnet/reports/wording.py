@@ -8,6 +8,7 @@ import re
 from markupsafe import Markup, escape
 
 LONGEST_WHOLE_NAME = 24
+NOT_SAID = 1e6  # half an interval, in any unit: verdicts give wider ones to parameters that recordings leave open
 PROPER = {"coriolis": "Coriolis", "coulomb": "Coulomb", "stribeck": "Stribeck", "lugre": "LuGre", "dahl": "Dahl"}
 
 
@@ -40,6 +41,8 @@ def percent(share: float | None) -> str:
 def with_interval(value: float, low: float, high: float) -> str:
     """A value and its 95 % interval, to two digits of the interval: 14.20 ± 0.31, or 3.1 (2.0 … 5.5) if lopsided."""
     half = (high - low) / 2
+    if half > NOT_SAID:
+        return f"not determined, taken as {number(value)}"
     if not math.isfinite(half) or half <= 0:
         return number(value)
     digits = _digits(value, half)
@@ -49,6 +52,12 @@ def with_interval(value: float, low: float, high: float) -> str:
     if places > 6:
         return f"{number(value, digits)} ± {number(half, 2)}"
     return f"{_signed(f'{value:.{places}f}')} ± {half:.{places}f}"
+
+
+def interval(ends: tuple[float, float] | list[float]) -> str:
+    """Both ends of a 95 % interval, or that there is none: 1.20 … 1.40, or not determined."""
+    low, high = ends
+    return "not determined" if (high - low) / 2 > NOT_SAID else f"{number(low, 4)} … {number(high, 4)}"
 
 
 def listed(words: list[str] | tuple[str, ...]) -> str:
@@ -110,6 +119,7 @@ FILTERS = {
     "effect_words": effect_words,
     "number": number,
     "percent": percent,
+    "interval": interval,
     "listed": listed,
     "counted": counted,
     "unit_words": unit_words,
