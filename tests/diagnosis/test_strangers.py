@@ -59,8 +59,7 @@ def test_a_cubic_drag_is_no_quadratic_one(cubic) -> None:
     assert result.verdict.unexplained[1].above_noise
 
 
-def test_without_the_question_both_would_have_a_wrong_name(anything_goes, pulled, cubic) -> None:
-    assert _elaborate(diagnose(*pulled))
+def test_without_the_question_a_cubic_drag_would_have_a_wrong_name(anything_goes, cubic) -> None:
     assert _elaborate(diagnose(*cubic)) == {"quadratic_drag"}
 
 
