@@ -175,3 +175,15 @@ def test_missing_velocities_are_derived():
     samples = samples_of([run])
     middle = slice(len(samples) // 4, 3 * len(samples) // 4)
     np.testing.assert_allclose(samples.a[middle], -samples.q[middle], atol=0.02)
+
+
+def test_a_stack_of_matrices_is_stepped_as_its_matrices_are():
+    rng = np.random.default_rng(5)
+    grads = [rng.normal(size=(3, 4, 2)) for _ in range(15)]
+    together, apart = scale_by_soap(), scale_by_soap()
+    stack, singles = jnp.zeros((3, 4, 2)), [jnp.zeros((4, 2))] * 3
+    one, many = together.init(stack), apart.init(singles)
+    for grad in grads:
+        step, one = together.update(jnp.asarray(grad, jnp.float32), one)
+        steps, many = apart.update([jnp.asarray(g, jnp.float32) for g in grad], many)
+    np.testing.assert_allclose(step, np.stack(steps), rtol=1e-5, atol=1e-6)

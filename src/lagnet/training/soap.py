@@ -92,11 +92,11 @@ def _unstack(stacks: list[Array], leaves: list[Array]) -> list[Array]:
 
 
 def _start_basis(stack: Array) -> Basis | None:
-    """Identity bases for stacks of matrices, None for vectors, which Adam serves as well."""
-    if stack.ndim != 3 or 1 in stack.shape[1:]:
+    """Identity bases for stacks of matrices, also of stacks of them; None for vectors, which Adam serves as well."""
+    if stack.ndim < 3 or 1 in stack.shape[-2:]:
         return None
     rows, columns = (
-        jnp.asarray(np.tile(np.eye(size), (stack.shape[0], 1, 1)), stack.dtype) for size in stack.shape[1:]
+        jnp.asarray(np.tile(np.eye(size), (*stack.shape[:-2], 1, 1)), stack.dtype) for size in stack.shape[-2:]
     )
     return Basis(jnp.zeros_like(rows), jnp.zeros_like(columns), rows, columns)
 
