@@ -7,12 +7,12 @@ Source: Wu et al. 2024, eqs 9–12.
 
 from __future__ import annotations
 
+from typing import Any
+
 import equinox as eqx
 
-from lagnet.models.dissipation import DissipationNetwork
 from lagnet.models.dynamics import AbstractDynamics, solve_for_acceleration
 from lagnet.models.lagrangian import Matrix, Vector
-from lagnet.models.torque_network import TorqueNetwork
 
 PARITIES = ("any", "odd")
 
@@ -22,12 +22,12 @@ class Augmented(AbstractDynamics):
 
     Args:
         mechanics: gives H, c and g.
-        residual: the network behind ε.
+        residual: the network behind ε, called with (q, v, a); a subclass may call it otherwise.
         parity: "any", or "odd" to keep only the part of ε that changes sign with the velocity.
     """
 
     mechanics: AbstractDynamics
-    residual: TorqueNetwork | DissipationNetwork
+    residual: Any
     parity: str = eqx.field(static=True)
 
     def epsilon(self, q: Vector, v: Vector, a: Vector) -> Vector:

@@ -28,6 +28,7 @@ from lagnet.models.scales import Scales
 from lagnet.models.torque_network import SLOW
 
 DRAGS = 2  # of a body: by its translation and by its turning
+LITTLE = 0.1  # root of the friction that an untrained joint has, over that of its typical power
 SMALL = 1e-6  # of a typical speed squared: rounds the tip of |S x|, whose slope is not defined there
 
 
@@ -78,20 +79,22 @@ class DissipationNetwork(eqx.Module):
 
         x, virtual_work = jax.vjp(motion, v / size)
         friction = self.viscous**2 * v / size + self.dry**2 * jnp.tanh(v / size / SLOW)
-        force = virtual_work(power[:, None] * self._drag(x))[0] + power * friction
+        wrench = wrench_of(self.linear, self.speeds, self.quadratic, x)
+        force = virtual_work(power[:, None] * wrench)[0] + power * friction
         return jax.lax.stop_gradient(self.shares) * force / size
-
-    def _drag(self, x: Array) -> Array:
-        """Wrench against the motion x of each body, both of shape (dof, rank)."""
-        wrench = _square(self.linear, x)
-        for seen, root in zip(self.speeds, self.quadratic, strict=True):
-            speed = jnp.sqrt(jnp.sum(_each(seen, x) ** 2, axis=1, keepdims=True) + SMALL)
-            wrench += speed * _square(root, x)
-        return wrench
 
     def scaled(self, shares: np.ndarray) -> DissipationNetwork:
         """The same with the torque of each joint times its share, shape (dof,)."""
         return eqx.tree_at(lambda x: x.shares, self, self.shares * shares.astype(self.shares.dtype))
+
+
+def wrench_of(linear: Array, speeds: Array, quadratic: Array, x: Array) -> Array:
+    """Wrench against the motion x of each body, both of shape (dof, rank); roots as in `DissipationNetwork`."""
+    wrench = _square(linear, x)
+    for seen, root in zip(speeds, quadratic, strict=True):
+        speed = jnp.sqrt(jnp.sum(_each(seen, x) ** 2, axis=1, keepdims=True) + SMALL)
+        wrench += speed * _square(root, x)
+    return wrench
 
 
 def _each(matrices: Array, x: Array) -> Array:
@@ -104,22 +107,32 @@ def _square(roots: Array, x: Array) -> Array:
     return jnp.einsum("nji,nj->ni", roots, _each(roots, x))
 
 
+def draw_roots(keys: Array, n_joints: int, rank: int, drags: int) -> tuple[Array, Array, Array]:
+    """Roots `linear`, `speeds` and `quadratic` of bodies that take little, each with its key."""
+    size = 0.3 / (np.sqrt(n_joints) * rank)
+    return (
+        size * jax.random.normal(keys[0], (n_joints, rank, rank)),
+        0.3 / np.sqrt(rank) * jax.random.normal(keys[1], (drags, n_joints, rank, rank)),
+        size * jax.random.normal(keys[2], (drags, n_joints, rank, rank)),
+    )
+
+
 def make_dissipation(
     key: Array, features: JointFeatures, scales: Scales, settings: DissipationSettings
 ) -> DissipationNetwork:
     """Draw an untrained network that takes little."""
     n, rank = len(features.joint_types), settings.rank
-    keys, size = jax.random.split(key, 5), 0.3 / (np.sqrt(n) * rank)
-    small, one = 0.1 * jnp.ones(n), jnp.ones(n)
+    keys = jax.random.split(key, 5)
+    linear, speeds, quadratic = draw_roots(keys[2:], n, rank, DRAGS)
     return DissipationNetwork(
         motion=make_chain_network(keys[0], features.owner, n, rank),
         axes=jax.random.normal(keys[1], (n, rank)),
-        linear=size * jax.random.normal(keys[2], (n, rank, rank)),
-        speeds=0.3 / np.sqrt(rank) * jax.random.normal(keys[3], (DRAGS, n, rank, rank)),
-        quadratic=size * jax.random.normal(keys[4], (DRAGS, n, rank, rank)),
-        viscous=small,
-        dry=small,
-        shares=one,
+        linear=linear,
+        speeds=speeds,
+        quadratic=quadratic,
+        viscous=LITTLE * jnp.ones(n),
+        dry=LITTLE * jnp.ones(n),
+        shares=jnp.ones(n),
         features=features.on_circle,
         scales=scales,
         settings=settings,

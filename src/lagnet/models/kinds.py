@@ -17,9 +17,10 @@ from jaxtyping import Array
 from lagnet.errors import ModelError, closest
 from lagnet.models.augmented import PARITIES, Augmented
 from lagnet.models.black_box_lagrangian import BlackBoxSettings, make_black_box
+from lagnet.models.body_drag import BodyDragSettings, make_dragged
 from lagnet.models.conservative import Conservative, FreeLagrangian
 from lagnet.models.delan import DelanSettings, make_delan
-from lagnet.models.dissipation import DissipationNetwork, DissipationSettings, make_dissipation
+from lagnet.models.dissipation import DissipationSettings, make_dissipation
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JointFeatures
 from lagnet.models.feed_forward import FeedForward
@@ -27,7 +28,9 @@ from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_percept
 from lagnet.models.scales import Scales
 from lagnet.models.serial_chain.dynamics import make_serial_chain
 from lagnet.models.serial_chain.settings import SerialChainSettings
-from lagnet.models.torque_network import TorqueNetwork, TorqueNetworkSettings, make_torque_network, silenced
+from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network, silenced
+
+OWN_MOTION = 'form="dissipation" has a motion of its own and goes with all mechanics'
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,8 @@ class AugmentedSettings:
 
     Args:
         mechanics: name of the kind under ε; mechanics_settings: its settings, None for its defaults.
-        form: what is behind ε: "perceptron" of (q, v, a), or "dissipation", which takes energy out and is odd in v.
+        form: what is behind ε: "perceptron" of (q, v, a), or what takes energy out and is odd in v: "dissipation", or
+            "body-drag" on the bodies of a `delan`, which is trained together with it (`separation="joint"`).
         residual: settings of that form, None for its defaults.
         parity: "odd" keeps only what changes sign with the velocity, which mechanics can never be; "any" keeps all of
             it, which can also be conservative torque and must be held back by the penalty λ.
@@ -55,6 +59,8 @@ class AugmentedSettings:
             raise ModelError(f"form {self.form!r} is unknown", choices=RESIDUALS)
         if self.residual is None:
             object.__setattr__(self, "residual", RESIDUALS[self.form][0]())
+        if self.form == "body-drag" and self.mechanics != "delan":
+            raise ModelError(f"body-drag acts on the bodies of delan, not of {self.mechanics}", next_step=OWN_MOTION)
         if self.mechanics_settings is None:
             object.__setattr__(self, "mechanics_settings", settings_class(self.mechanics)())
 
@@ -85,13 +91,16 @@ class ModelSpec:
 def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
     """Mechanics start as they would without ε, so that with an ε that stays silent they also end there."""
     mechanics = _entry(settings.mechanics)[1](key, features, scales, settings.mechanics_settings)
+    if settings.form == "body-drag":
+        return make_dragged(jax.random.fold_in(key, 1), mechanics, scales, settings.residual)
     epsilon = RESIDUALS[settings.form][1](jax.random.fold_in(key, 1), features, scales, settings.residual)
     return Augmented(mechanics, epsilon, settings.parity)
 
 
-RESIDUALS: dict[str, tuple[type, Callable[..., TorqueNetwork | DissipationNetwork]]] = {
+RESIDUALS: dict[str, tuple[type, Callable[..., Any]]] = {
     "perceptron": (TorqueNetworkSettings, lambda *given: silenced(make_torque_network(*given))),
     "dissipation": (DissipationSettings, make_dissipation),
+    "body-drag": (BodyDragSettings, make_dragged),
 }
 
 KINDS: dict[str, tuple[type, Callable[..., AbstractDynamics]]] = {

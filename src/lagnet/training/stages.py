@@ -6,6 +6,7 @@ computed once, and is kept only as far as held-out torque bears it out (`held_ou
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +16,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
+from lagnet.errors import ModelError
 from lagnet.models.augmented import Augmented
+from lagnet.models.body_drag import Dragged
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.massless import Massless
 from lagnet.training.fit import BorneOut, Fitted, Task, fit
@@ -29,7 +32,13 @@ ROWS = 4096  # samples whose torque is computed together
 
 
 def in_stages(start: Augmented, task: Task) -> Fitted:
-    """Train mechanics for the task's steps, then ε for as many on what they left."""
+    """Train mechanics for the task's steps, then ε for as many on what they left.
+
+    Raises:
+        ModelError: an ε that acts on the bodies of its mechanics.
+    """
+    if isinstance(start, Dragged):
+        raise ModelError("body-drag cannot be trained in stages", next_step='train with separation="joint", penalty=0')
     first = fit(start.mechanics, _stage(task, 0))
     whole = Augmented(first.dynamics, start.residual, start.parity)
     if first.history.interrupted:
@@ -52,26 +61,26 @@ def as_borne_out(fitted: Fitted, task: Task) -> Fitted:
     assert isinstance(model, Augmented)
     q, v, a, _ = task.held_out.arrays
     left = _left(task.held_out, model.mechanics).tau
-    epsilon = torque_of(Augmented(Massless(), model.residual, model.parity), q, v, a)
+    epsilon = torque_of(model.epsilon, q, v, a)
     kept = shares(left, epsilon)
     smaller = eqx.tree_at(lambda x: x.residual, model, model.residual.scaled(kept))
     error = np.mean((left - kept * epsilon) ** 2, axis=0) / np.maximum(task.samples.tau.var(axis=0), 1e-18)
     return replace(fitted, dynamics=smaller, borne_out=BorneOut(tuple(kept.tolist()), tuple(error.tolist())))
 
 
-def torque_of(dynamics: AbstractDynamics, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
-    """Inverse dynamics of samples of shape (n, dof) in double precision, in bounded memory."""
+def torque_of(law: Callable[..., Array], q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+    """What a model's method of (q, v, a) gives for samples of shape (n, dof) in double precision, in bounded memory."""
     rows = -(-len(q) // ROWS) * ROWS
     full = [np.pad(x, ((0, rows - len(q)), (0, 0)), mode="edge").reshape(-1, ROWS, x.shape[1]) for x in (q, v, a)]
     with jax.enable_x64(True):
-        wide = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64) if eqx.is_array(x) else x, dynamics)
+        wide = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64) if eqx.is_array(x) else x, law)
         parts = [np.asarray(_batch(wide, *map(jnp.asarray, part))) for part in zip(*full, strict=True)]
     return np.concatenate(parts)[: len(q)]
 
 
 @eqx.filter_jit
-def _batch(dynamics: AbstractDynamics, q: Array, v: Array, a: Array) -> Array:
-    return jax.vmap(dynamics.inverse_dynamics)(q, v, a)
+def _batch(law: Callable[..., Array], q: Array, v: Array, a: Array) -> Array:
+    return jax.vmap(law)(q, v, a)
 
 
 def stage_files(checkpoint: Path) -> tuple[Path, ...]:
@@ -82,7 +91,7 @@ def stage_files(checkpoint: Path) -> tuple[Path, ...]:
 def _left(samples: TrainingSamples, mechanics: AbstractDynamics) -> TrainingSamples:
     """The samples with the torque that mechanics leave."""
     q, v, a, tau = samples.arrays
-    return replace(samples, tau=tau - torque_of(mechanics, q, v, a))
+    return replace(samples, tau=tau - torque_of(mechanics.inverse_dynamics, q, v, a))
 
 
 def _stage(task: Task, place: int) -> Task:
