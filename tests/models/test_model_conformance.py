@@ -21,12 +21,16 @@ from lagnet.types import InverseDynamics
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 AUTODIFF = 1e-5  # central differences at step 1e-6: truncation plus rounding
 TYPES = ("continuous", "prismatic", "revolute")
-LEARNED = [kind for kind in KINDS if kind != "serial-chain"]
-MECHANICAL = ["delan", "delan-perceptron", "delan-ffnn"]
+FORMS = ("dissipation", "body-drag")  # of ε, beside the perceptron
+WITH_FORMS = [f"delan-ffnn {form}" for form in FORMS]
+LEARNED = [*(kind for kind in KINDS if kind != "serial-chain"), *WITH_FORMS]
+MECHANICAL = ["delan", "delan-perceptron", "delan-ffnn", *WITH_FORMS]
 
 
 def settings_of(kind: str) -> Any:
     small = {"hidden": (8, 8)}
+    if kind in WITH_FORMS:
+        return AugmentedSettings(form=kind.split()[1])
     if kind == "delan-ffnn":
         return AugmentedSettings(residual=TorqueNetworkSettings(**small), parity="odd")
     return settings_class(kind)() if kind == "delan" else settings_class(kind)(**small)
@@ -40,10 +44,10 @@ def motion() -> tuple[np.ndarray, ...]:
 
 @cache
 def made(kind: str) -> LearnedModel:
-    """One model of a kind, with random weights; kept, since compiling its calls takes longer than all tests."""
+    """One model of a kind and form of ε with random weights; kept, since compiling takes longer than all tests."""
     rng = np.random.default_rng(0)
     q, v, a, tau = rng.normal(size=(4, 60, 3))
-    spec = ModelSpec(kind, settings_of(kind), ("a", "b", "c"), fit_features(q, TYPES), fit_scales(v, a, tau))
+    spec = ModelSpec(kind.split()[0], settings_of(kind), ("a", "b", "c"), fit_features(q, TYPES), fit_scales(v, a, tau))
     drawn = draw(spec, jax.random.key(1))
     if kind == "delan-ffnn":  # an ε that starts at zero would hide mistakes in it
         drawn = jax.tree.map(lambda x: x + 0.1, drawn)
