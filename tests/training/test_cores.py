@@ -15,13 +15,14 @@ import pytest
 from lagnet.training.cores import mesh_for, parts_of, usable_cores
 
 SCRIPT = Path(__file__).with_name("trained_on_cores.py")
+PATIENCE = 240.0  # [s] for ten seconds of work
 ROUNDING = 1e-3  # of torques of the order of one, after a hundred steps in single precision
 
 
 def trained(*words: str, **environment: str) -> dict[str, Any]:
     kept = {k: v for k, v in os.environ.items() if k not in ("JAX_NUM_CPU_DEVICES", "XLA_FLAGS")}
     command = [sys.executable, str(SCRIPT), *words]
-    done = subprocess.run(command, env=kept | environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env=kept | environment, capture_output=True, text=True, check=True, timeout=PATIENCE)
     return json.loads(done.stdout.splitlines()[-1])
 
 
@@ -38,6 +39,11 @@ def test_two_devices_train_as_one_does_to_rounding(two) -> None:
 
 def test_the_same_number_gives_the_same_model(two) -> None:
     assert trained("2") == two
+
+
+def test_the_usual_training_of_an_arm_ends() -> None:
+    """A batch of factorisations is spread over threads that the devices need for themselves: none may be asked for."""
+    assert trained("2", "delan", "soap", "6")["devices"] == 2
 
 
 def test_the_environment_is_heeded_where_no_number_is_given() -> None:

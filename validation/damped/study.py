@@ -41,6 +41,7 @@ SHARE = {  # of the steps: these forms of ε cost more a sample
 OTHERS = ("delan", "delan-blackbox", "ffnn")
 TOGETHER = TrainingSettings(penalty=0.0, separation="joint")
 LONGER = "delan-ffnn, longer"
+LONG_SEEDS = 3  # five to six minutes of both cores each
 LONG = replace(TOGETHER, steps=16_000, batch=2048, learning_rate=2e-2)
 MODELS: dict[str, tuple[str, Any, TrainingSettings]] = {
     "delan-ffnn": ("delan-ffnn", AugmentedSettings(form="body-drag"), TOGETHER),
@@ -64,7 +65,8 @@ def run(quick: bool, names: Sequence[str], known: dict[str, Any]) -> dict[str, A
     test = damped_motion(robot, TEST, TEST_SEED, None, Damping())
     models = dict(known)
     for name in names:
-        done = [told(_trained(name, data, seed, quick), robot, test) for seed in range(1 if quick else SEEDS)]
+        seeds = 1 if quick else LONG_SEEDS if name == LONGER else SEEDS
+        done = [told(_trained(name, data, seed, quick), robot, test) for seed in range(seeds)]
         models[name] = over_seeds(done)
         print(name, models[name]["median"], flush=True)
     return {"samples": len(data), "test_samples": len(test), "models": models, "passed": judge(models)}

@@ -140,7 +140,17 @@ def _follow(basis: Basis, grad: Array, turn: Array, b2: float) -> Basis:
     right = b2 * basis.right + (1 - b2) * grad.mT @ grad
 
     def turned(_: None) -> tuple[Array, Array]:
-        return jnp.linalg.qr(left @ basis.left_vectors)[0], jnp.linalg.qr(right @ basis.right_vectors)[0]
+        return _orthonormal(left @ basis.left_vectors), _orthonormal(right @ basis.right_vectors)
 
     vectors = jax.lax.cond(turn, turned, lambda _: (basis.left_vectors, basis.right_vectors), None)
     return Basis(left, right, *vectors)
+
+
+def _orthonormal(stack: Array) -> Array:
+    """Orthonormal columns of each matrix, one after the other.
+
+    A batch of them would be spread over the processor's threads; where each core is a device of JAX, the devices then
+    wait for each other's threads for ever.
+    """
+    matrices = stack.reshape(-1, *stack.shape[-2:])
+    return jax.lax.map(lambda x: jnp.linalg.qr(x)[0], matrices).reshape(stack.shape)
