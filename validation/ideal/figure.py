@@ -17,15 +17,15 @@ def draw_figure(models: dict[str, Any], path: Path) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(1, len(TERMS), figsize=(14, 3.6), sharey=True)
+    figure, axes = pyplot.subplots(1, len(TERMS), figsize=(14, 4.2), sharey=True, layout="constrained")
     width = 0.8 / len(models)
     for axis, term in zip(axes, TERMS, strict=True):
         for place, (kind, found) in enumerate(models.items()):
             errors = [np.nan if e is None else e for e in found["median"][term]]
             axis.bar(np.arange(len(errors)) + place * width, errors, width, label=kind)
-        axis.set(yscale="log", title=term, xlabel="joint")
+        axis.set(yscale="log", title=term, xlabel="joint", xticks=np.arange(len(errors)) + 0.4 - width / 2)
+        axis.set_xticklabels([str(j) for j in range(len(errors))])
     axes[0].set_ylabel("normalised mean squared error")
-    axes[-1].legend(fontsize=7)
-    figure.tight_layout()
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8)
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
