@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from lagnet.diagnosis.wording import percent
+from lagnet.diagnosis.verdict import NamedParameter
+from lagnet.diagnosis.wording import percent, values
 
 
 @pytest.mark.parametrize(
@@ -13,3 +14,9 @@ from lagnet.diagnosis.wording import percent
 )
 def test_a_share_is_a_percentage_without_a_power_of_ten(share: float, words: str) -> None:
     assert percent(share) == words
+
+
+def test_a_sentence_tells_what_the_recordings_determine() -> None:
+    open_, told = NamedParameter("dm", 1.5, "kg", (-2e6, 2e6)), NamedParameter("dmcx", 0.25, "kg m", (0.2, 0.3))
+    assert values([open_, told]) == "dmcx = 0.25 kg m"
+    assert values([open_]) == "dm = 1.5 kg"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from lagnet.diagnosis.refit_work import NOT_SAID
 from lagnet.diagnosis.tie_advice import recording_against
 from lagnet.diagnosis.verdict import EffectEvidence, NamedParameter
 from lagnet.effects.effect import Effect
@@ -21,7 +22,7 @@ def explain(
 ) -> str:
     """One or two sentences: what, where, how large, and what it does for the held-out error."""
     where = f"at {joint}" if joint else "on the whole arm"
-    shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in parameters[:MOST_PARAMETERS])
+    shown = values(parameters)
     remark = law.remark({p.name: p.value for p in parameters})
     shown += f" ({remark})" if remark else ""
     first = f"{law.title} {where}, {law.formula} with {shown}: without it the held-out error is "
@@ -33,6 +34,12 @@ def explain(
     return first
 
 
+def values(parameters: Sequence[NamedParameter]) -> str:
+    """The first few parameters that the recordings determine, with their values."""
+    told = [p for p in parameters if p.ci95[1] - p.ci95[0] < 2.0 * NOT_SAID] or parameters
+    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in told[:MOST_PARAMETERS])
+
+
 def explain_passing(
     law: Effect,
     interval: tuple[float, float],
@@ -42,7 +49,7 @@ def explain_passing(
     evidence: EffectEvidence,
 ) -> str:
     """What acted, when, in which recording, and what it does for parts of that time that were not fitted."""
-    shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in parameters[:MOST_PARAMETERS])
+    shown = values(parameters)
     first = f"{law.title} from {interval[0]:.4g} s to {interval[1]:.4g} s of {recording}, {law.formula} with {shown}: "
     first += f"in that time the error is {percent(evidence.holdout_nmse_without)} of the torque's variance without it, "
     first += f"{percent(evidence.holdout_nmse_with)} with it, each part predicted from the others. "
