@@ -21,6 +21,7 @@ from lagnet.models.augmented import Augmented
 from lagnet.models.conservative import Conservative
 from lagnet.models.delan import Delan
 from lagnet.models.dissipation import LITTLE, draw_roots, wrench_of
+from lagnet.models.features import JointFeatures
 from lagnet.models.lagrangian import Vector
 from lagnet.models.scales import Scales
 from lagnet.models.torque_network import SLOW
@@ -88,10 +89,12 @@ class Dragged(Augmented):
         return self.residual.torque(self.mechanics.lagrangian, q, v)
 
 
-def make_dragged(key: Array, mechanics: Any, scales: Scales, settings: BodyDragSettings) -> Dragged:
-    """Untrained drag that takes little, on mechanics of the kind `delan`."""
+def make_dragged(
+    mechanics: Any, parity: str, key: Array, features: JointFeatures, scales: Scales, settings: BodyDragSettings
+) -> Dragged:
+    """Untrained drag that takes little, on mechanics of the kind `delan`; it is odd whatever the parity asked."""
     n, rank = mechanics.lagrangian.axes.shape
     linear, speeds, quadratic = draw_roots(jax.random.split(key, 3), n, rank, settings.drags)
     little = LITTLE * jnp.ones(n)
     drag = BodyDrag(linear, speeds, quadratic, little, little, jnp.ones(n), scales, settings)
-    return Dragged(mechanics, drag, "any")
+    return Dragged(mechanics, drag, parity)

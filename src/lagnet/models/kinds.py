@@ -91,15 +91,18 @@ class ModelSpec:
 def _make_augmented(key: Array, features: JointFeatures, scales: Scales, settings: AugmentedSettings) -> Augmented:
     """Mechanics start as they would without ε, so that with an ε that stays silent they also end there."""
     mechanics = _entry(settings.mechanics)[1](key, features, scales, settings.mechanics_settings)
-    if settings.form == "body-drag":
-        return make_dragged(jax.random.fold_in(key, 1), mechanics, scales, settings.residual)
-    epsilon = RESIDUALS[settings.form][1](jax.random.fold_in(key, 1), features, scales, settings.residual)
-    return Augmented(mechanics, epsilon, settings.parity)
+    own = jax.random.fold_in(key, 1), features, scales, settings.residual
+    return RESIDUALS[settings.form][1](mechanics, settings.parity, *own)
 
 
-RESIDUALS: dict[str, tuple[type, Callable[..., Any]]] = {
-    "perceptron": (TorqueNetworkSettings, lambda *given: silenced(make_torque_network(*given))),
-    "dissipation": (DissipationSettings, make_dissipation),
+def _beside(make: Callable[..., Any]) -> Callable[..., Augmented]:
+    """Mechanics with an ε that does not look at them."""
+    return lambda mechanics, parity, *own: Augmented(mechanics, make(*own), parity)
+
+
+RESIDUALS: dict[str, tuple[type, Callable[..., Augmented]]] = {
+    "perceptron": (TorqueNetworkSettings, _beside(lambda *own: silenced(make_torque_network(*own)))),
+    "dissipation": (DissipationSettings, _beside(make_dissipation)),
     "body-drag": (BodyDragSettings, make_dragged),
 }
 
