@@ -128,7 +128,8 @@ def _effects(inquiry: Inquiry) -> tuple[EffectFound, ...]:
     for n, index in enumerate(inquiry.found.selection):
         part = inquiry.held_out[index]
         rival, odds = contests[index].best_rival
-        evidence = EffectEvidence(part.without, part.with_it, part.share, rival, odds)
+        variance = inquiry.problem.scale**2 if part.silent else inquiry.problem.unseen_variance
+        evidence = EffectEvidence(*part.of_variance(variance), part.share, rival, odds)
         out.append(_effect(inquiry, n, contests[index], evidence))
     return tuple(out)
 
@@ -163,8 +164,7 @@ def _unexplained(inquiry: Inquiry, joint: int) -> Unexplained:
 
 def _fit(inquiry: Inquiry, joint: int) -> JointFit:
     problem = inquiry.problem
-    torque = np.concatenate([problem.reduce(p, p.tau)[:, joint] for p in problem.holdout])
-    variance = max(float(np.var(torque)), 1e-300)
+    variance = float(problem.unseen_variance[joint])
     nominal, named = power_of(*stacked(problem, problem.holdout), joint), inquiry.leftovers[joint].power
     floor = float(inquiry.noise[joint] ** 2) / variance
     return JointFit(problem.joints[joint], nominal / variance, named / variance, None, floor)

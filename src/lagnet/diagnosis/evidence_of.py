@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,12 +18,13 @@ class HeldOut:
     """Held-out errors of one effect, at its joint or averaged over the joints that it reaches.
 
     Args:
-        without, with_it: nMSE.
+        without, with_it: nMSE, of the variance of the fitted torque.
         share: of the mismatch that it alone explains, 0 to 1.
         at_joints: joints where it helps.
         shares: shape (dof,), share of each joint's mismatch that it alone explains.
         silent: whether the held-out recordings hardly meet it, such as a limit that they never reach, so that what is
             held out are blocks of the fitted recordings, some at a time.
+        powers: mean squared error without and with it at `at_joints`, shape (2, number of them) [N² m²].
     """
 
     without: float
@@ -32,6 +33,12 @@ class HeldOut:
     at_joints: tuple[int, ...]
     shares: np.ndarray
     silent: bool = False
+    powers: np.ndarray = field(default_factory=lambda: np.zeros((2, 0)))
+
+    def of_variance(self, variance: np.ndarray) -> tuple[float, float]:
+        """Errors without and with it, averaged over its joints, as parts of a variance of shape (dof,) [N² m²]."""
+        without, with_it = (self.powers / variance[list(self.at_joints)]).mean(axis=1)
+        return float(without), float(with_it)
 
 
 def unseen_nmse(bench: Workbench, fit: Fit, unseen: Workbench, scale: np.ndarray) -> np.ndarray:
@@ -73,8 +80,9 @@ def _part(
     gained = without - with_all
     share = float(np.clip(np.sum(gained[at]) / max(1e-300, np.sum(nominal[at])), 0.0, 1.0))
     shares = np.clip(gained / np.maximum(nominal, 1e-300), 0.0, 1.0)
+    powers = np.array([without[at], with_all[at]]) * scale[at] ** 2
     return HeldOut(
-        float(np.mean(without[at])), float(np.mean(with_all[at])), share, tuple(map(int, at)), shares, silent
+        float(np.mean(without[at])), float(np.mean(with_all[at])), share, tuple(map(int, at)), shares, silent, powers
     )
 
 

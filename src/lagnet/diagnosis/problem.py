@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -83,6 +84,12 @@ class Problem:
     def n_dof(self) -> int:
         """Number of joints."""
         return len(self.joints)
+
+    @cached_property
+    def unseen_variance(self) -> np.ndarray:
+        """Variance of the held-out torque, shape (dof,) [N² m²]: what held-out errors are told in parts of."""
+        torque = np.concatenate([self.reduce(p, p.tau) for p in self.holdout])
+        return np.maximum(torque.var(axis=0), 1e-300)
 
     def reduce(self, piece: Piece, x: np.ndarray) -> np.ndarray:
         """The low-pass of a signal at the samples that count, shape (len(keep), ...); the same for torque and model."""
