@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.diagnosis.posed import pose
@@ -41,6 +43,16 @@ def test_the_regime_that_holds_the_residual_is_told(problem, kind) -> None:
 def test_an_even_residual_is_everywhere(problem) -> None:
     residual = np.ones(motion_of(problem, "v").size)
     assert [r.regime for r in locate(problem, residual, 1, prismatic=False)] == ["everywhere"]
+
+
+def test_a_nominal_torque_that_is_nought_but_for_rounding_makes_no_regime(problem) -> None:
+    rounding = tuple(replace(p, load=1e-17 * p.load) for p in problem.fit)
+    heavy = np.concatenate([np.abs(p.load[p.keep, 1]) for p in problem.fit])
+    residual = np.where(heavy > np.quantile(heavy, 0.8), 1.0, 0.02)
+    told = [r.regime for r in locate(problem, residual, 1, prismatic=False)]
+    assert "high_load" in told
+    without = locate(replace(problem, fit=rounding), residual, 1, prismatic=False)
+    assert "high_load" not in [r.regime for r in without]
 
 
 def test_no_residual_is_nowhere(problem) -> None:

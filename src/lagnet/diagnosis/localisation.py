@@ -14,6 +14,7 @@ LEAST_LIFT = 1.3  # residual power in a regime over that overall, below which th
 MOST_REGIMES = 4
 PARTS = 6  # ranges of position and intervals of time that are tried
 AFTER_REVERSAL = 0.15  # [s] around a change of direction
+ROUNDING = 1e-9  # of the recorded torque: a nominal torque below it is nought but for rounding
 FEW = 20  # samples below which a regime says nothing
 
 
@@ -86,7 +87,8 @@ def _regimes(problem: Problem, joint: int, unit: str, spans: Sequence[Span]) -> 
     limit = float(np.quantile(np.abs(a), 0.8))
     yield "high_acceleration", f"|a_{joint}| > {limit:.3g} {unit}/s²", np.abs(a) > limit
     limit = float(np.quantile(np.abs(load), 0.8))
-    yield "high_load", f"|nominal torque_{joint}| > {limit:.3g} {'N' if unit == 'm' else 'N m'}", np.abs(load) > limit
+    if limit > ROUNDING * problem.scale[joint]:
+        yield "high_load", f"|nominal torque_{joint}| > {limit:.3g} {'N' if unit == 'm' else 'N m'}", np.abs(load) > limit
     edges = np.linspace(q.min(), q.max(), PARTS + 1)
     for low, high in pairwise(edges):
         yield "position", f"{low:.3g} ≤ q_{joint} < {high:.3g} {unit}", (q >= low) & (q < high)
