@@ -86,9 +86,9 @@ def _regimes(problem: Problem, joint: int, unit: str, spans: Sequence[Span]) -> 
     yield "negative_direction", f"v_{joint} < 0", v < -problem.slow[joint]
     limit = float(np.quantile(np.abs(a), 0.8))
     yield "high_acceleration", f"|a_{joint}| > {limit:.3g} {unit}/s²", np.abs(a) > limit
-    limit = float(np.quantile(np.abs(load), 0.8))
-    if limit > ROUNDING * problem.scale[joint]:
-        yield "high_load", f"|nominal torque_{joint}| > {limit:.3g} {'N' if unit == 'm' else 'N m'}", np.abs(load) > limit
+    heavy, newton = float(np.quantile(np.abs(load), 0.8)), "N" if unit == "m" else "N m"
+    if heavy > ROUNDING * problem.scale[joint]:
+        yield "high_load", f"|nominal torque_{joint}| > {heavy:.3g} {newton}", np.abs(load) > heavy
     edges = np.linspace(q.min(), q.max(), PARTS + 1)
     for low, high in pairwise(edges):
         yield "position", f"{low:.3g} ≤ q_{joint} < {high:.3g} {unit}", (q >= low) & (q < high)
