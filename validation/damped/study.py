@@ -41,7 +41,7 @@ SHARE = {  # of the steps: these forms of ε cost more a sample
 OTHERS = ("delan", "delan-blackbox", "ffnn")
 TOGETHER = TrainingSettings(penalty=0.0, separation="joint")
 LONGER = "delan-ffnn, longer"
-LONG_SEEDS = 3  # five to six minutes of both cores each
+LONG_SEEDS = 5  # five minutes of both cores each
 LONG = replace(TOGETHER, steps=16_000, batch=2048, learning_rate=2e-2)
 MODELS: dict[str, tuple[str, Any, TrainingSettings]] = {
     "delan-ffnn": ("delan-ffnn", AugmentedSettings(form="body-drag"), TOGETHER),
