@@ -11,7 +11,7 @@ from lagnet.cli.main import COMMANDS
 from lagnet.recordings.datasets import data_sets, fetch
 from lagnet.recordings.derived import RECIPES
 
-app = typer.Typer(help=COMMANDS["data"], no_args_is_help=True, add_completion=False)
+app = typer.Typer(help=COMMANDS["data"], no_args_is_help=True, add_completion=False, rich_markup_mode="markdown")
 
 
 @app.command("list")

@@ -81,7 +81,7 @@ def load_command(name: str) -> Any:
         ) from None
     if hasattr(module, "app"):
         return typer.main.get_command(module.app)
-    app = typer.Typer(add_completion=False)
+    app = typer.Typer(add_completion=False, rich_markup_mode="markdown")
     app.command(name=name, short_help=COMMANDS[name])(module.command)
     return typer.main.get_command(app)
 
@@ -100,7 +100,9 @@ def _top(version: bool = typer.Option(False, "--version", callback=_version, is_
 
 def build() -> LazyCommands:
     """The whole command line as one command object."""
-    app = typer.Typer(cls=LazyCommands, help=HELP, rich_markup_mode="rich", context_settings={"max_content_width": 120})
+    app = typer.Typer(
+        cls=LazyCommands, help=HELP, rich_markup_mode="markdown", context_settings={"max_content_width": 120}
+    )
     app.callback()(_top)
     group: Any = typer.main.get_command(app)
     group.commands = {name: TyperCommand(name, help=text) for name, text in COMMANDS.items()}
