@@ -8,6 +8,7 @@ from lagnet.diagnosis.arm_search import Found
 from lagnet.diagnosis.ceiling import find_ceiling, signals_of
 from lagnet.diagnosis.evidence_of import HeldOut, held_out_evidence
 from lagnet.diagnosis.fitting import Workbench
+from lagnet.diagnosis.learned_nominal import may_be_its_error, was_learned
 from lagnet.diagnosis.leftover import ABOVE, every_second_part
 from lagnet.diagnosis.problem import Piece, Problem
 from lagnet.diagnosis.settle import without
@@ -36,7 +37,8 @@ def withdraw(
 
     A name is held to the joints where it helps, and stands if it is good at one of them: another joint may hold
     physics of its own. What only the held-out motion meets speaks against no name, unless it can be predicted from the
-    fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it. A joint that
+    fitted one. What is smaller than the known ignorance of the nominal model is not told apart from it, and what may be
+    the error of a learned one stands only if it explains many times what is left. A joint that
     the names together make worse than the nominal model loses those whose torque there is larger than the mismatch,
     since they cancel each other on the fitted motion alone; a far-reaching one that explains another joint stays.
 
@@ -49,9 +51,11 @@ def withdraw(
     fitted = _left_shares(problem, problem.fit, effects, noise)
     both = {j: min(s, fitted.get(j, 0.0)) for j, s in shares.items()}
     needed = {j: s for j, s in both.items() if s > LITTLE}
-    much = {j: s for j, s in shares.items() if s > MUCH}
-    needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
-    if not needed and not harmed and problem.missed is None:
+    if not was_learned(problem.nominal):  # the error of a network is a function of the arm's state, too
+        much = {j: s for j, s in shares.items() if s > MUCH}
+        needed |= {j: STANDS * s for j, s in _predictable(problem, effects, much, seed).items()}
+    doubtful = may_be_its_error(problem, effects)
+    if not needed and not harmed and not doubtful and problem.missed is None:
         return found
     ignored = _ignored(problem)
     sigma = found.sigma(bench)
@@ -60,10 +64,18 @@ def withdraw(
     for index in found.selection:
         h, part = bench.library.hypotheses[index], parts[index]
         good = any(part.shares[j] >= max(needed.get(j, 0.0), ignored[j]) for j in part.at_joints)
+        if (h.effect, h.joint) in doubtful:
+            good &= outshines(part, shares, fitted)
         harms = any((h.effect, h.joint) in names for names in harmed.values())
         if not good or (harms and not _stands_elsewhere(h.law, part, {*harmed}, shares)):
             out = without(bench, out, index)
     return out
+
+
+def outshines(part: HeldOut, *left: dict[int, float]) -> bool:
+    """Whether a name explains many times what is left where it does most, both in the fit and held out."""
+    most = max(part.at_joints, key=lambda j: part.shares[j])
+    return bool(part.shares[most] >= STANDS * max(shares.get(most, 0.0) for shares in left))
 
 
 def _stands_elsewhere(law: Effect, part: HeldOut, harmed: set[int], shares: dict[int, float]) -> bool:
