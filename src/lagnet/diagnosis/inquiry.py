@@ -30,6 +30,7 @@ from lagnet.diagnosis.spells import Spell, set_aside
 from lagnet.diagnosis.strangers import drop_likenesses
 from lagnet.diagnosis.too_dense import drop_too_dense
 from lagnet.diagnosis.too_vague import TooVague, all_without, too_vague
+from lagnet.diagnosis.turning_delays import drop_turning_delays
 from lagnet.diagnosis.unjudged import contests_with_unjudged
 from lagnet.diagnosis.unsure import drop_unsure
 from lagnet.models.corrected import NamedEffect
@@ -116,6 +117,8 @@ def _sifted(
             modest = drop_likenesses(problem, bench, found, fitted.effects, noise)
         if modest is found:
             modest = drop_too_dense(problem, bench, found, fitted.effects)
+        if modest is found:
+            modest = drop_turning_delays(problem, bench, found, fitted.effects)
         if modest is not found:
             found, fitted = refit_and_prune(problem, bench, modest)
             continue

@@ -73,7 +73,7 @@ def _joined(pieces: tuple[Piece, ...], name: str, joint: int) -> np.ndarray:
 
 def _regimes(problem: Problem, joint: int, unit: str, spans: Sequence[Span]) -> Iterator[tuple[str, str, np.ndarray]]:
     q, v, a, load = (_joined(problem.fit, n, joint) for n in ("q", "v", "a", "load"))
-    near = np.concatenate([_near_reversal(p, joint)[p.keep] for p in problem.fit])
+    near = np.concatenate([near_reversal(p, joint)[p.keep] for p in problem.fit])
     yield "velocity_reversal", f"within {AFTER_REVERSAL:g} s of a change of sign of v_{joint}", near
     speed = np.abs(v)
     for quantile in (0.1, 0.25):
@@ -108,7 +108,8 @@ def _times(problem: Problem, spans: Sequence[Span]) -> Iterator[tuple[str, str, 
         yield "time_interval", rule, (recording == index) & (time >= low) & (time < high)
 
 
-def _near_reversal(piece: Piece, joint: int) -> np.ndarray:
+def near_reversal(piece: Piece, joint: int) -> np.ndarray:
+    """Samples around a change of direction of a joint, shape (n,)."""
     v = piece.v[:, joint]
     turns = np.flatnonzero(np.diff(np.sign(v)) != 0)
     marks = np.zeros(v.size)
