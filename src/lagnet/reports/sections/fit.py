@@ -16,6 +16,7 @@ KINDS = (
     ("nmse_named_and_residual_network", "with a residual network too", "law"),
 )
 NAME_WIDTH = 20  # characters in a line
+MOST_TICKS = 7  # whose percentages have room beside each other
 SMALLEST = 1e-6  # a bar on a logarithmic axis cannot reach zero
 
 
@@ -76,8 +77,9 @@ def _range(values: list[float]) -> dict[str, Any]:
     present = [math.log10(max(value, SMALLEST)) for value in values]
     high = max(max(present) + 0.1, 0.05)
     low = min(present) - max(0.4 * (high - min(present)), 0.3)
-    ticks = list(range(math.ceil(low), math.floor(high) + 1))
+    decades = range(math.ceil(low), math.floor(high) + 1)
+    ticks = [tick for tick in decades if tick % (1 + len(decades) // MOST_TICKS) == 0]
     return {
         "type": "log", "range": [low, high], "tickvals": [10.0**tick for tick in ticks],
-        "ticktext": [f"{10.0 ** (tick + 2):g} %" if tick >= -4 else f"10<sup>{tick}</sup>" for tick in ticks],
+        "ticktext": [f"{10.0 ** (tick + 2):.{max(0, -tick - 2)}f} %" for tick in ticks],
     }  # fmt: skip
