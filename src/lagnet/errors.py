@@ -5,6 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+LONGEST, WORD, MOST_CHOICES = 1500, 80, 60  # characters of a message and of a choice; choices that are listed
+
+
+def _shortened(text: str, most: int) -> str:
+    """A text of at most so many characters: files from elsewhere hold names of any length."""
+    return text if len(text) <= most else text[: most // 2] + " … " + text[-most // 3 :]
+
 
 class LagnetError(Exception):
     """What the user gave cannot be used; the message is one clear sentence for a terminal.
@@ -24,9 +31,11 @@ class LagnetError(Exception):
         super().__init__(self._message())
 
     def _message(self) -> str:
-        text = f"{self.where}: {self.what}" if self.where else self.what
+        what = _shortened(self.what, LONGEST)
+        text = f"{self.where}: {what}" if self.where else what
         if self.choices:
-            text += f" (valid: {', '.join(self.choices)})"
+            more = f", … ({len(self.choices)} in all)" if len(self.choices) > MOST_CHOICES else ""
+            text += f" (valid: {', '.join(_shortened(c, WORD) for c in self.choices[:MOST_CHOICES])}{more})"
         if self.next_step:
             text += f"; {self.next_step}"
         return text
