@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from lagnet.errors import ModelError
-from lagnet.models.body_drag import BodyDragSettings, Dragged
-from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw, settings_from
+from lagnet.models.lagrangians.delan import DelanSettings
+from lagnet.models.residuals.body_drag import BodyDragSettings, Dragged
 from lagnet.models.scales import Scales
 from lagnet.recordings.recording import Recording
 from lagnet.training.settings import TrainingSettings
@@ -41,19 +42,22 @@ def test_it_follows_the_bodies_of_the_mechanics(motion):
     one[0, 2], root[0, 2] = turn, np.sqrt(moments)
     arm = dynamics.mechanics.lagrangian
     still = tuple(np.concatenate([turn, np.zeros((3, t.shape[1] - 3))], axis=1) for t in arm.motion.transfers)
+    with jax.enable_x64(True):
+        values = jax.tree.map(jnp.asarray, (still, turn, zeros, one, root, np.zeros(3), np.zeros(3)))
     dynamics = eqx.tree_at(
         lambda x: (
             *(x.mechanics.lagrangian.motion.transfers, x.mechanics.lagrangian.axes),
             *(x.residual.linear, x.residual.speeds, x.residual.quadratic, x.residual.viscous, x.residual.dry),
         ),
         dynamics,
-        (still, turn, zeros, one, root, np.zeros(3), np.zeros(3)),
+        values,
     )
     with jax.enable_x64(True):
         found = np.asarray(jax.vmap(dynamics.epsilon)(q, v, a))
     np.testing.assert_allclose(found, np.linalg.norm(v, axis=1, keepdims=True) * v @ moments, rtol=ROUNDED_TIP)
 
 
+@pytest.mark.slow
 def test_it_learns_with_its_mechanics_and_not_in_stages():
     """One prismatic joint with mass 2 kg and drag 3 v |v| + v."""
     rng = np.random.default_rng(0)

@@ -9,9 +9,9 @@ import pytest
 
 import lagnet
 from lagnet.errors import LagnetError, ModelError
-from lagnet.models.corrected import CorrectedModel, NamedEffect
-from lagnet.models.corrected_files import FILE, load_corrected, save_corrected
-from lagnet.models.loading import load_any
+from lagnet.models.corrected.folder import FILE, load_corrected, save_corrected
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.files.loading import load_any
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 from lagnet.rigid_body.robot import load_description
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagnet.errors import EffectError
-from lagnet.models.corrected import CorrectedModel, NamedEffect, apply_to_bodies
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect, apply_to_bodies
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import load_description
 from lagnet.types import InverseDynamics

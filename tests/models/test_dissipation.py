@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from lagnet.errors import ModelError
-from lagnet.models.augmented import Augmented
-from lagnet.models.delan import DelanSettings
-from lagnet.models.dissipation import DRAGS, DissipationSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw, settings_from
+from lagnet.models.lagrangians.delan import DelanSettings
 from lagnet.models.learned_model import LearnedModel
+from lagnet.models.residuals.augmented import Augmented
+from lagnet.models.residuals.dissipation import DRAGS, DissipationSettings
 from lagnet.models.scales import Scales, fit_scales
 
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
@@ -41,9 +42,7 @@ def test_it_holds_drag_that_is_the_gradient_of_nothing():
     moments, turn = np.diag([1.0, 2.0, 5.0]), np.eye(3)
     q, v, a = np.random.default_rng(0).normal(size=(3, 60, 3))
     settings = AugmentedSettings(form="dissipation", residual=DissipationSettings(rank=3), mechanics_settings=SMALL)
-    spec = ModelSpec(
-        "delan-ffnn", settings, ("a", "b", "c"), fit_features(q, TYPES), Scales((1,) * 3, (1,) * 3, (1,) * 3)
-    )
+    spec = ModelSpec("delan-ffnn", settings, ("a", "b", "c"), fit_features(q, TYPES), Scales(*[(1.0,) * 3] * 3))
     dynamics = draw(spec, jax.random.key(1))
     assert isinstance(dynamics, Augmented)
     one = np.zeros((DRAGS, 3, 3, 3))
@@ -53,10 +52,13 @@ def test_it_holds_drag_that_is_the_gradient_of_nothing():
     still = tuple(
         np.concatenate([turn, np.zeros((3, t.shape[1] - 3))], axis=1) for t in dynamics.residual.motion.transfers
     )
+    values = (still, turn, np.zeros((3, 3, 3)), one, root, np.zeros(3), np.zeros(3))
+    with jax.enable_x64(True):
+        values = jax.tree.map(jnp.asarray, values)
     drag = eqx.tree_at(
         lambda x: (x.motion.transfers, x.axes, x.linear, x.speeds, x.quadratic, x.viscous, x.dry),
         dynamics.residual,
-        (still, turn, np.zeros((3, 3, 3)), one, root, np.zeros(3), np.zeros(3)),
+        values,
     )
     with jax.enable_x64(True):
         found = np.asarray(jax.vmap(drag)(q, v, a))
@@ -69,8 +71,9 @@ def test_shares_scale_the_torque_of_each_joint(model, motion):
     q, v, a = (x[0] for x in motion)
     shares = np.array([1.0, 0.0, 0.5])
     with jax.enable_x64(True):
-        found = dynamics.residual.scaled(shares)(q, v, a)
-        np.testing.assert_allclose(found, shares * np.asarray(dynamics.residual(q, v, a)), atol=IDENTITY)
+        sample = tuple(jnp.asarray(x) for x in (q, v, a))
+        found = dynamics.residual.scaled(shares)(*sample)
+        np.testing.assert_allclose(found, shares * np.asarray(dynamics.residual(*sample)), atol=IDENTITY)
 
 
 def test_settings_of_another_form_are_refused():

@@ -6,13 +6,13 @@ import jax
 import numpy as np
 import pytest
 
-from lagnet.models.body_drag import BodyDragSettings
-from lagnet.models.delan import DelanSettings
-from lagnet.models.dissipation import DissipationSettings
 from lagnet.models.features import fit_features
+from lagnet.models.files.saving import load_model
 from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw
+from lagnet.models.lagrangians.delan import DelanSettings
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.saving import load_model
+from lagnet.models.residuals.body_drag import BodyDragSettings
+from lagnet.models.residuals.dissipation import DissipationSettings
 from lagnet.models.scales import fit_scales
 
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100

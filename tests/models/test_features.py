@@ -5,6 +5,7 @@ from __future__ import annotations
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw, settings_class
@@ -35,6 +36,7 @@ def test_a_sliding_joint_keeps_its_standard_size():
     assert features.on_circle.scale[1:] == (1.0, 1.0)
 
 
+@pytest.mark.slow
 def test_seven_bounded_joints_start_near_the_size_of_the_torque():
     rng = np.random.default_rng(2)
     q, v, a = rng.uniform(-NARROW, NARROW, (200, 7)), rng.normal(size=(200, 7)), rng.normal(size=(200, 7))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tests.models.term_by_term import GravityInResidual, WithoutCoriolis, failures
 
-from lagnet.models.saving import load_model
+from lagnet.models.files.saving import load_model
 from lagnet.rigid_body.robot import load_description
 
 FIXTURES = Path(__file__).parent / "fixtures"
@@ -46,6 +46,7 @@ def test_the_mass_matrix_is_positive_definite_everywhere(model, motion):
     assert np.linalg.eigvalsh(model.mass_matrix(motion[0])).min() > 0
 
 
+@pytest.mark.slow
 def test_a_model_of_shuffled_torques_fails(robot, motion):
     found = failed(load_model(FIXTURES / "ur5_shuffled"), robot, motion)
     assert {"torque", "inertial", "gravity", "mass_matrix"} <= found

@@ -9,8 +9,8 @@ import pytest
 from lagnet.errors import ModelError
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw
+from lagnet.models.lagrangians.perceptron_delan import PerceptronDelanSettings
 from lagnet.models.learned_model import CHUNK, LearnedModel
-from lagnet.models.perceptron_delan import PerceptronDelanSettings
 from lagnet.models.scales import fit_scales
 
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100

@@ -11,11 +11,11 @@ import pytest
 
 from lagnet.errors import ModelError
 from lagnet.models.features import fit_features
+from lagnet.models.files.saving import load_model
 from lagnet.models.kinds import KINDS, AugmentedSettings, ModelSpec, draw, settings_class
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.saving import load_model
+from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.models.scales import fit_scales
-from lagnet.models.torque_network import TorqueNetworkSettings
 from lagnet.types import InverseDynamics
 
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100

@@ -6,13 +6,13 @@ import jax
 import numpy as np
 import pytest
 
-from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw
+from lagnet.models.lagrangians.delan import DelanSettings
+from lagnet.models.lagrangians.perceptron_delan import COUPLINGS, PerceptronDelanSettings
 from lagnet.models.learned_model import LearnedModel
 from lagnet.models.networks import ACTIVATIONS
 from lagnet.models.one_sample import BENDS, OneSample
-from lagnet.models.perceptron_delan import COUPLINGS, PerceptronDelanSettings
 from lagnet.models.scales import fit_scales
 
 IDENTITY = 1e-10  # float64 rounding of some hundred operations on numbers of order 1 to 100

@@ -7,12 +7,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from lagnet.models import euler_lagrange
-from lagnet.models.conservative import Conservative
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.conservative import Conservative
+from lagnet.models.lagrangians.perceptron_delan import COUPLINGS, PerceptronDelanSettings
 from lagnet.models.networks import ACTIVATIONS, make_network
-from lagnet.models.perceptron_delan import COUPLINGS, PerceptronDelanSettings
 from lagnet.models.scales import fit_scales
 
 IDENTITY = 1e-10  # float64 rounding of some hundred operations on numbers of order 1 to 100

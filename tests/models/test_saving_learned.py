@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from lagnet.errors import ModelError
-from lagnet.models.saving import load_model
+from lagnet.models.files.saving import load_model
 
 KEPT = Path(__file__).parent / "fixtures" / "ur5_delan"
 

@@ -14,10 +14,10 @@ from tests.models.term_by_term import GravityInResidual, WithoutCoriolis, failur
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import ModelError
-from lagnet.models import euler_lagrange
-from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.files.loading import load_any
+from lagnet.models.lagrangians import euler_lagrange
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.loading import load_any
 from lagnet.models.serial_chain.fit import fit_serial_chain
 from lagnet.models.serial_chain.inertia import from_standard, pseudo_inertia, to_standard
 from lagnet.models.serial_chain.kinematics import Geometry, revolute_mask
@@ -154,6 +154,7 @@ def failed(model: Any, robot: Robot) -> set[str]:
     return failures(model, robot, _motion(robot, 300, 99), EXACT, EXACT**0.5, EXACT)
 
 
+@pytest.mark.slow
 def test_every_term_is_found_from_torque_alone(robot: Robot, learned: tuple) -> None:
     model = learned[0]
     assert failed(model, robot) == set()
@@ -269,6 +270,7 @@ def test_saved_and_read_back_it_is_the_same(robot: Robot, learned: tuple, tmp_pa
         load_serial_chain(folder)
 
 
+@pytest.mark.slow
 def test_shuffled_torque_is_not_explained(robot: Robot) -> None:
     q, v, a = _motion(robot, 200, 4)
     tau = np.random.default_rng(0).permutation(robot.inverse_dynamics(q, v, a))
@@ -280,6 +282,7 @@ def test_shuffled_torque_is_not_explained(robot: Robot) -> None:
     assert found.cost.min() > 0.8  # chance explains no more than its share of unknowns
 
 
+@pytest.mark.slow
 def test_friction_and_noise_are_told_from_the_arm(robot: Robot) -> None:
     q, v, a = _motion(robot, 1000, 2)
     clean = robot.inverse_dynamics(q, v, a)
@@ -295,6 +298,7 @@ def test_friction_and_noise_are_told_from_the_arm(robot: Robot) -> None:
     assert np.sum(off**2) < 1e-4 * np.sum(robot.mass_matrix(q) ** 2)
 
 
+@pytest.mark.slow
 def test_terms_that_torque_does_not_ask_for_are_dropped(robot: Robot, tmp_path: Path) -> None:
     q, v, a = _motion(robot, 400, 3)
     tau = robot.inverse_dynamics(q, v, a)
@@ -306,6 +310,7 @@ def test_terms_that_torque_does_not_ask_for_are_dropped(robot: Robot, tmp_path: 
     np.testing.assert_array_equal(again.inverse_dynamics(q, v, a), model.inverse_dynamics(q, v, a))
 
 
+@pytest.mark.slow
 def test_friction_reverses_as_sharply_as_it_was_recorded(robot: Robot) -> None:
     q, v, a = _motion(robot, 1000, 2)
     tau = robot.inverse_dynamics(q, v, a) + 2.0 * np.sign(v)

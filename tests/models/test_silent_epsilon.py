@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import jax
 import numpy as np
+import pytest
 
-from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw
+from lagnet.models.lagrangians.delan import DelanSettings
 from lagnet.models.learned_model import CHUNK, LearnedModel
 from lagnet.models.scales import fit_scales
 
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 
 
+@pytest.mark.slow
 def test_a_silent_epsilon_adds_nothing_to_a_full_batch():
     q, v, a, tau = np.random.default_rng(0).normal(size=(4, CHUNK, 2))
     settings = AugmentedSettings(mechanics_settings=DelanSettings(rank=3, potential_rank=3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.rigid_body.robot import load_description
 
 IDENTITY = 1e-9  # rounding in float64

@@ -6,7 +6,7 @@ import jax
 import numpy as np
 import pytest
 
-from lagnet.models.corrected import CorrectedModel, NamedEffect
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw, settings_class
 from lagnet.models.learned_model import LearnedModel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from lagnet.models.saving import load_model
+from lagnet.models.files.saving import load_model
 from lagnet.plausibility.report import PlausibilityReport
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.plausibility.suite import check

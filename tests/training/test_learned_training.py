@@ -12,11 +12,11 @@ import optax
 import pytest
 
 from lagnet.errors import LagnetError, ModelError
-from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features, guess_joint_types
 from lagnet.models.kinds import AugmentedSettings, ModelSpec, draw
+from lagnet.models.lagrangians.delan import DelanSettings
+from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.models.scales import fit_scales
-from lagnet.models.torque_network import TorqueNetworkSettings
 from lagnet.recordings.recording import Recording
 from lagnet.training.checkpoint import read_checkpoint, write_checkpoint
 from lagnet.training.loss import Errors, errors, penalised

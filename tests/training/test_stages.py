@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from tests.training.test_learned_training import SHORT, TINY, pendulum
 
-from lagnet.models.augmented import Augmented
 from lagnet.models.kinds import AugmentedSettings
-from lagnet.models.torque_network import TorqueNetworkSettings
+from lagnet.models.residuals.augmented import Augmented
+from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.training.held_out_share import shares
 from lagnet.training.train import train
 

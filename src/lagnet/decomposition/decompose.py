@@ -145,7 +145,7 @@ class _Motion:
             q,
             v,
             a,
-            np.concatenate([r.tau for r in recordings]),
+            np.concatenate([r.torque for r in recordings]),
             np.repeat(np.arange(len(recordings)), [len(r) for r in recordings]),
             np.concatenate(trajectory),
             sources.pop() if len(sources) == 1 else "recorded and differentiated",

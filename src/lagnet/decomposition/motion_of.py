@@ -17,9 +17,9 @@ def motion_of(recording: Recording) -> tuple[Trajectory, Trajectory, Trajectory,
     """
     if recording.v is not None and recording.a is not None:
         return recording.q, recording.v, recording.a, "recorded"
-    from lagnet.recordings.conditioning import condition, motion_at_samples
-    from lagnet.recordings.smoothing import SHORTEST
-    from lagnet.recordings.stretches import stretches_of
+    from lagnet.recordings.conditioning.condition import condition, motion_at_samples
+    from lagnet.recordings.conditioning.smoothing import SHORTEST
+    from lagnet.recordings.conditioning.stretches import stretches_of
 
     if all(rows.stop - rows.start < SHORTEST for rows in stretches_of(recording)):
         raise RecordingError(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from lagnet.decomposition.agreement import Agreement
 from lagnet.decomposition.decompose import Decomposition
 from lagnet.decomposition.energies import work
+from lagnet.files import write_whole
 
 
 def write_decomposition(parts: Decomposition, folder: str | Path) -> Path:
@@ -26,9 +27,11 @@ def write_decomposition(parts: Decomposition, folder: str | Path) -> Path:
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    _replace(folder / "decomposition.parquet", lambda path: pq.write_table(pa.table(columns(parts)), path))
+    table = io.BytesIO()
+    pq.write_table(pa.table(columns(parts)), table)
+    write_whole(folder / "decomposition.parquet", table.getvalue())
     text = json.dumps(_finite(summary(parts)), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-    _replace(folder / "decomposition.json", lambda path: path.write_text(text, encoding="utf-8"))
+    write_whole(folder / "decomposition.json", text)
     return folder
 
 
@@ -97,12 +100,3 @@ def _finite(node: Any) -> Any:
     if isinstance(node, list):
         return [_finite(value) for value in node]
     return None if isinstance(node, float) and not math.isfinite(node) else node
-
-
-def _replace(path: Path, write: Any) -> None:
-    draft = path.with_name(path.name + ".partial")
-    try:
-        write(draft)
-        os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)

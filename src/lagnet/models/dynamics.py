@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from lagnet.models.lagrangian import Matrix, Vector
+from lagnet.models.lagrangians.lagrangian import Matrix, Vector
 
 NEWTON_STEPS = (
     8  # at most: the torque is linear in a but for ε, which is small or smooth, so that convergence is quadratic

@@ -138,8 +138,8 @@ class Ensemble:
         return self._mean("residual_torque", q, v, a)
 
     def save(self, folder: str | Path) -> Path:
-        """Write all members and the band to a folder, without pickle; see `lagnet.models.ensemble_files`."""
-        from lagnet.models.ensemble_files import save_ensemble
+        """Write all members and the band to a folder, without pickle; see `lagnet.models.files.ensemble_files`."""
+        from lagnet.models.files.ensemble_files import save_ensemble
 
         return save_ensemble(self, folder)
 

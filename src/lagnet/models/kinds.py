@@ -15,20 +15,20 @@ import jax
 from jaxtyping import Array
 
 from lagnet.errors import ModelError, closest
-from lagnet.models.augmented import PARITIES, Augmented
-from lagnet.models.black_box_lagrangian import BlackBoxSettings, make_black_box
-from lagnet.models.body_drag import BodyDragSettings, make_dragged
-from lagnet.models.conservative import Conservative, FreeLagrangian
-from lagnet.models.delan import DelanSettings, make_delan
-from lagnet.models.dissipation import DissipationSettings, make_dissipation
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JointFeatures
-from lagnet.models.feed_forward import FeedForward
-from lagnet.models.perceptron_delan import PerceptronDelanSettings, make_perceptron_delan
+from lagnet.models.lagrangians.black_box_lagrangian import BlackBoxSettings, make_black_box
+from lagnet.models.lagrangians.conservative import Conservative, FreeLagrangian
+from lagnet.models.lagrangians.delan import DelanSettings, make_delan
+from lagnet.models.lagrangians.perceptron_delan import PerceptronDelanSettings, make_perceptron_delan
+from lagnet.models.residuals.augmented import PARITIES, Augmented
+from lagnet.models.residuals.body_drag import BodyDragSettings, make_dragged
+from lagnet.models.residuals.dissipation import DissipationSettings, make_dissipation
+from lagnet.models.residuals.feed_forward import FeedForward
+from lagnet.models.residuals.torque_network import TorqueNetworkSettings, make_torque_network, silenced
 from lagnet.models.scales import Scales
 from lagnet.models.serial_chain.dynamics import make_serial_chain
 from lagnet.models.serial_chain.settings import SerialChainSettings
-from lagnet.models.torque_network import TorqueNetworkSettings, make_torque_network, silenced
 
 OWN_MOTION = 'form="dissipation" has a motion of its own and goes with all mechanics'
 

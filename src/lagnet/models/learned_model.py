@@ -15,12 +15,12 @@ import jax.numpy as jnp
 import numpy as np
 
 from lagnet.errors import ModelError
-from lagnet.models.augmented import Augmented
-from lagnet.models.conservative import Conservative, FreeLagrangian
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.kinds import ModelSpec
+from lagnet.models.lagrangians.conservative import Conservative, FreeLagrangian
 from lagnet.models.networks import OrderedNetwork
 from lagnet.models.one_sample import torque_of_one
+from lagnet.models.residuals.augmented import Augmented
 from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.types import MassMatrix, Samples, Trajectory
 
@@ -121,8 +121,8 @@ class LearnedModel:
         return LearnedModel(self.spec, self.dynamics, self.training, self.source, self.sha256, "single")
 
     def save(self, folder: str | Path) -> Path:
-        """Write the model to a folder, without pickle; see `lagnet.models.saving`."""
-        from lagnet.models.saving import save_model
+        """Write the model to a folder, without pickle; see `lagnet.models.files.saving`."""
+        from lagnet.models.files.saving import save_model
 
         return save_model(self, folder)
 

@@ -12,11 +12,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import expit
 
-from lagnet.models.conservative import Conservative
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JointFeatures
+from lagnet.models.lagrangians.conservative import Conservative
+from lagnet.models.lagrangians.perceptron_delan import PerceptronDelan
 from lagnet.models.networks import OrderedNetwork
-from lagnet.models.perceptron_delan import PerceptronDelan
 
 Array = np.ndarray
 Bend = Callable[[Array], tuple[Array, Array]]

@@ -96,7 +96,7 @@ class _FromCommandLine:
 
     def subject(self) -> Any:
         if self._subject is None:
-            from lagnet.models.loading import load_any
+            from lagnet.models.files.loading import load_any
             from lagnet.plausibility.settings import CheckSettings
             from lagnet.plausibility.subject import Subject
 
@@ -175,7 +175,7 @@ def lagnet_model_of_command_line(request: pytest.FixtureRequest) -> Any:
     spec = request.config.getoption("--lagnet-model")
     if not spec:
         pytest.fail("define a fixture lagnet_model that returns your model, or give --lagnet-model")
-    from lagnet.models.loading import load_any
+    from lagnet.models.files.loading import load_any
 
     return load_any(spec)
 
@@ -194,7 +194,7 @@ def _subject_of(request: pytest.FixtureRequest, model: Any) -> Any:
         settings = CheckSettings(**{name: asked[name] for name in OPTIONS if name in asked})
         reference = asked.get("reference")
         if isinstance(reference, str):
-            from lagnet.models.loading import load_any
+            from lagnet.models.files.loading import load_any
 
             reference = load_any(reference)
         # The model is kept beside its subject, so that its id is not given to another one.

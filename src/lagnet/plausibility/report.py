@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from lagnet.files import write_whole
 from lagnet.plausibility.check import FAIL, NOT_APPLICABLE, PASS, CheckResult
 
 
@@ -55,14 +55,7 @@ class PlausibilityReport:
 
     def write(self, path: str | Path) -> Path:
         """Write plausibility.json in one step, so that an interrupted run leaves no half of it."""
-        path = Path(path)
-        draft = path.with_name(path.name + ".partial")
-        try:
-            draft.write_text(self.to_json(), encoding="utf-8")
-            os.replace(draft, path)
-        finally:
-            draft.unlink(missing_ok=True)
-        return path
+        return write_whole(path, self.to_json())
 
     def _count(self, status: str) -> int:
         return sum(c.status == status for c in self.checks)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from lagnet.errors import ModelError, RecordingError
+from lagnet.files import write_whole
 from lagnet.recordings.readers.npz_file import NpzArchive
 
 FILE = "training_checkpoint.npz"
@@ -30,10 +30,7 @@ def write_checkpoint(path: Path, state: Any, about: str) -> None:
     arrays = {f"leaf_{i}": np.asarray(_plain(x)) for i, x in enumerate(leaves)}
     stream = io.BytesIO()
     np.savez(stream, allow_pickle=False, about=np.frombuffer(about.encode(), np.uint8), **arrays)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial")
-    partial.write_bytes(stream.getvalue())
-    os.replace(partial, path)
+    write_whole(path, stream.getvalue())
 
 
 def read_checkpoint(path: Path, like: Any, about: str) -> Any | None:

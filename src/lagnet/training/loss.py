@@ -9,8 +9,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from lagnet.models.augmented import Augmented
 from lagnet.models.dynamics import AbstractDynamics
+from lagnet.models.residuals.augmented import Augmented
 
 
 class Errors(NamedTuple):

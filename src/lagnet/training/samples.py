@@ -65,9 +65,9 @@ def samples_of(recordings: Sequence[Recording]) -> TrainingSamples:
                 where=recording.path or None,
             )
     if all(r.v is not None and r.a is not None for r in recordings):
-        columns = [[getattr(r, name) for r in recordings] for name in ("q", "v", "a", "tau")]
+        columns = [[getattr(r, name) for r in recordings] for name in ("q", "v", "a", "torque")]
     else:
-        from lagnet.recordings.conditioning import condition
+        from lagnet.recordings.conditioning.condition import condition
 
         stretches = condition(recordings).stretches
         columns = [[getattr(s, name) for s in stretches] for name in ("q", "v", "a", "tau")]

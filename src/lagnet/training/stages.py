@@ -17,10 +17,10 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.errors import ModelError
-from lagnet.models.augmented import Augmented
-from lagnet.models.body_drag import Dragged
 from lagnet.models.dynamics import AbstractDynamics
-from lagnet.models.massless import Massless
+from lagnet.models.lagrangians.massless import Massless
+from lagnet.models.residuals.augmented import Augmented
+from lagnet.models.residuals.body_drag import Dragged
 from lagnet.training.fit import BorneOut, Fitted, Task, fit
 from lagnet.training.held_out_share import shares
 from lagnet.training.samples import TrainingSamples

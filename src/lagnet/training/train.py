@@ -13,11 +13,11 @@ from typing import Any
 import jax
 import numpy as np
 
-from lagnet.models.augmented import Augmented
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import fit_features, guess_joint_types
 from lagnet.models.kinds import ModelSpec, draw, settings_class
 from lagnet.models.learned_model import LearnedModel
+from lagnet.models.residuals.augmented import Augmented
 from lagnet.models.scales import fit_scales
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split

@@ -7,10 +7,10 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from lagnet.models import euler_lagrange
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import Matrix, Vector
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.lagrangian import Matrix, Vector
 from lagnet.models.scales import Scales
 from lagnet.models.serial_chain.joint_terms import joint_term_columns
 from lagnet.models.serial_chain.kinematics import Geometry, revolute_mask

@@ -111,7 +111,7 @@ def frame_motion(geometry: Geometry, revolute: tuple[bool, ...], q: Array, v: Ar
     """The vectors of every link and their accelerations at one state; q, v, a of shape (dof,)."""
     turned = turning(geometry.angles, revolute, q, v, a)
     origin = _origins(turned.rotation, turned.slide, geometry.offsets)
-    origin_second = _origins(turned.second, turned.slide_second, geometry.offsets) - geometry.gravity
+    origin_second = _origins(turned.second, turned.slide_second, geometry.offsets) - geometry.gravity[None, :]
     return FrameMotion(
         jnp.concatenate([jnp.swapaxes(turned.rotation, 1, 2), origin[:, None]], axis=1),
         jnp.concatenate([jnp.swapaxes(turned.second, 1, 2), origin_second[:, None]], axis=1),

@@ -19,9 +19,9 @@ import numpy as np
 
 from lagnet.errors import ModelError
 from lagnet.models.features import fit_features
+from lagnet.models.files.saving import load_model
 from lagnet.models.kinds import ModelSpec
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.saving import load_model
 from lagnet.models.scales import fit_scales
 from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.models.serial_chain.fit import SerialChainFit, fit_serial_chain
@@ -156,7 +156,7 @@ class SerialChain:
         return SerialChain(LearnedModel(self.learned.spec, pulled, self.learned.training))
 
     def save(self, folder: str | Path) -> Path:
-        """Write the model to a folder, without pickle; see `lagnet.models.saving`."""
+        """Write the model to a folder, without pickle; see `lagnet.models.files.saving`."""
         return self.learned.save(folder)
 
 

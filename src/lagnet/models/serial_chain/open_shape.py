@@ -83,7 +83,7 @@ class OpenShape:
 
     def _open(self, missed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Directions of the offsets, (offsets, k), that moments can make up for, and 1 / deviation of each [1/m]."""
-        columns = _regressor(self.arm.revolute, self.arm.geometry, *self._states) / missed[:, None]
+        columns = _regressor(self.arm.revolute, self.arm.geometry, *self._states) / missed[None, :, None]
         slopes = _slopes(self.arm.revolute, self.arm.geometry, jnp.asarray(self._moments.ravel()), *self._states)
         columns, slopes = _flat(columns), _flat(np.asarray(slopes) / missed[:, None])
         left, values, _ = np.linalg.svd(columns / _sizes(columns), full_matrices=False)

@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,15 @@ import numpy as np
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import LagnetError, ModelError
-from lagnet.models.corrected import CorrectedModel, NamedEffect, has_real_bodies
+from lagnet.files import finite_json, read_bounded, write_whole
+from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json, remainder_as_json, remainder_from_json
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect, has_real_bodies
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 1
+FORMAT = 2  # 2: with the identified layer
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
+LONGEST_NAME = 200
 
 
 def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
@@ -43,8 +47,10 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
             | ({} if e.recording is None else {"recording": e.recording})
             for e in model.effects
         ],
+        "identified": layer_as_json(model.identified),
+        "remainder": remainder_as_json(model.remainder),
     }
-    (out / FILE).write_text(json.dumps(text, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_whole(out / FILE, finite_json(text))
     if isinstance(model.nominal, Robot) and has_real_bodies(model):
         write_description(model.bodies(), out / "robot")
     return out
@@ -77,25 +83,33 @@ def write_description(robot: Robot, stem: Path) -> Path:
     return path
 
 
-def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> CorrectedModel:
+def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: str = "full") -> CorrectedModel:
     """Reads what `save_corrected` wrote.
 
     Args:
+        folder: where it is.
         load_any: reads the nominal model inside the folder.
+        layers: of the correction, "named", "identified" or "full".
 
     Raises:
         ModelError: the folder is damaged or from a newer format.
     """
     where = Path(folder) / FILE
     text = _read(where)
+    if not isinstance(text.get("format", 0), int):
+        raise ModelError("is damaged (format)", where=str(where), next_step="run the diagnosis again")
     if text.get("format", 0) > FORMAT:
         raise ModelError(f"format {text['format']} is newer than {FORMAT}", where=str(where), next_step="update lagnet")
     try:
         file = Path(folder) / Path(str(text["nominal"]["file"])).name
         expected = str(text["nominal"]["sha256"])
+        if len(file.name) > LONGEST_NAME:
+            raise ValueError("the name of its nominal model's file is too long")
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
+        identified = layer_from_json(text.get("identified"), len(joints))
+        remainder = remainder_from_json(text.get("remainder"), len(joints))
         held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
@@ -109,7 +123,9 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any]) -> Corre
         raise ModelError("its joints are not those of its nominal model", where=str(where))
     straight = None if straight is None else straight.astype(bool)
     of_file = (str(folder), _checksum(where))
-    return CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left)
+    model = CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left, identified=identified)
+    model = replace(model, remainder=remainder)
+    return model.with_layers(layers)
 
 
 def _as_list(row: np.ndarray | None) -> list[float] | None:
@@ -129,15 +145,15 @@ def _read(where: Path) -> dict[str, Any]:
     try:
         if where.stat().st_size > MOST_BYTES:
             raise ModelError("is far larger than any corrected model", where=str(where))
-        text = json.loads(where.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        text = json.loads(read_bounded(where, MOST_BYTES).decode("utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise ModelError(f"cannot be read ({error})", where=str(where)) from None
     if not isinstance(text, dict):
         raise ModelError("holds no object", where=str(where))
     return text
 
 
-def _effect(entry: dict[str, Any], n_dof: int) -> NamedEffect:
+def _effect(entry: Any, n_dof: int) -> NamedEffect:
     law = effect_named(str(entry["effect"]))
     joint = entry["joint"]
     if (joint is None) != law.whole_arm or (joint is not None and not 0 <= int(joint) < n_dof):

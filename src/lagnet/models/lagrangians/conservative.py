@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import jax.numpy as jnp
 
-from lagnet.models import euler_lagrange
 from lagnet.models.dynamics import AbstractDynamics, solve_for_acceleration
-from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Vector
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Vector
 
 
 class Conservative(AbstractDynamics):

@@ -17,14 +17,14 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.errors import ModelError
-from lagnet.models.augmented import Augmented
-from lagnet.models.conservative import Conservative
-from lagnet.models.delan import Delan
-from lagnet.models.dissipation import LITTLE, draw_roots, wrench_of
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import Vector
+from lagnet.models.lagrangians.conservative import Conservative
+from lagnet.models.lagrangians.delan import Delan
+from lagnet.models.lagrangians.lagrangian import Vector
+from lagnet.models.residuals.augmented import Augmented
+from lagnet.models.residuals.dissipation import LITTLE, draw_roots, wrench_of
+from lagnet.models.residuals.torque_network import SLOW
 from lagnet.models.scales import Scales
-from lagnet.models.torque_network import SLOW
 
 
 @dataclass(frozen=True)

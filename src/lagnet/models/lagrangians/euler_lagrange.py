@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jax.scipy.linalg import cho_factor, cho_solve
 
-from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Vector
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Vector
 
 
 def inverse_dynamics(arm: AbstractLagrangian, q: Vector, v: Vector, a: Vector) -> Vector:

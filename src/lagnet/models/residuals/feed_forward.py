@@ -9,10 +9,10 @@ from __future__ import annotations
 import jax
 import jax.numpy as jnp
 
-from lagnet.models import euler_lagrange
 from lagnet.models.dynamics import AbstractDynamics, solve_for_acceleration
-from lagnet.models.lagrangian import Matrix, Vector
-from lagnet.models.torque_network import TorqueNetwork
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.lagrangian import Matrix, Vector
+from lagnet.models.residuals.torque_network import TorqueNetwork
 
 
 class FeedForward(AbstractDynamics):

@@ -19,7 +19,7 @@ from jaxtyping import Array
 
 from lagnet.errors import ModelError
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
 from lagnet.models.networks import OrderedNetwork, check_widths, make_network
 from lagnet.models.scales import Scales
 
@@ -85,9 +85,9 @@ class PerceptronDelan(AbstractLagrangian):
         rate = bent * along(slopes * (v @ owner)).reshape(bent.shape)
         speed = jnp.sum(factor * v[:, None], axis=0)
         change = jnp.sum(rate * v[:, None] + factor * a[:, None], axis=0)
-        force = back((bent * v[:, None] * speed).ravel())
+        force = back((bent * v[:, None] * speed[None, :]).ravel())
         pull = self.potential.linearised(inputs)[2](jnp.asarray(self.scales.torque, raw.dtype))
-        return jnp.sum(rate * speed + factor * change, axis=1) + owner @ (slopes * (pull - force))
+        return jnp.sum(rate * speed[None, :] + factor * change[None, :], axis=1) + owner @ (slopes * (pull - force))
 
     def kinetic_energy(self, q: Vector, v: Vector) -> Scalar:
         return 0.5 * jnp.sum((self.factor(q).T @ v) ** 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import jax.numpy as jnp
 
 from lagnet.models.dynamics import AbstractDynamics
-from lagnet.models.lagrangian import Matrix, Vector
+from lagnet.models.lagrangians.lagrangian import Matrix, Vector
 
 
 class Massless(AbstractDynamics):

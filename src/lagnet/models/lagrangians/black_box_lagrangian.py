@@ -14,9 +14,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from lagnet.models import euler_lagrange
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
 from lagnet.models.networks import OrderedNetwork, check_widths, make_network
 from lagnet.models.scales import Scales
 

@@ -1,4 +1,4 @@
-"""An ensemble on disk: `ensemble.json` with its band, and a folder a member as `lagnet.models.saving` writes it."""
+"""An ensemble on disk: `ensemble.json` with its band, and a folder a member as `saving` writes it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import ModelError
+from lagnet.files import finite_json, read_bounded, write_whole
 from lagnet.models.ensemble import Band, Ensemble
-from lagnet.models.saving import DAMAGED, load_model
+from lagnet.models.files.saving import DAMAGED, load_model
 
 FILE, FORMAT = "ensemble.json", 1
 MOST_MEMBERS, MOST_BYTES = 1000, 2**20
@@ -27,7 +28,7 @@ def save_ensemble(ensemble: Ensemble, folder: str | Path) -> Path:
     for number, member in enumerate(ensemble.members):
         member.save(out / _name(number))
     text = {"format": FORMAT, "members": len(ensemble.members), "band": dataclasses.asdict(ensemble.band)}
-    (out / FILE).write_text(json.dumps(text, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_whole(out / FILE, finite_json(text, indent=2))
     return out
 
 
@@ -42,7 +43,7 @@ def load_ensemble(folder: str | Path) -> Ensemble:
     try:
         if (folder / FILE).stat().st_size > MOST_BYTES:
             raise ValueError("too large")
-        said: Any = json.loads((folder / FILE).read_text(encoding="utf-8"))
+        said: Any = json.loads(read_bounded(folder / FILE, MOST_BYTES).decode("utf-8"))
         count, version, band = said["members"], said["format"], _band(said["band"])
         if not isinstance(count, int) or not 2 <= count <= MOST_MEMBERS or not isinstance(version, int):
             raise ValueError("members")

@@ -23,9 +23,9 @@ from jaxtyping import Array
 from lagnet.errors import ModelError
 from lagnet.models.chain_network import ChainNetwork, make_chain_network
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import Vector
+from lagnet.models.lagrangians.lagrangian import Vector
+from lagnet.models.residuals.torque_network import SLOW
 from lagnet.models.scales import Scales
-from lagnet.models.torque_network import SLOW
 
 DRAGS = 2  # of a body: by its translation and by its turning
 LITTLE = 0.1  # root of the friction that an untrained joint has, over that of its typical power

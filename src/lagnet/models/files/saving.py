@@ -11,7 +11,6 @@ import hashlib
 import io
 import json
 import math
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from lagnet.errors import ModelError, RecordingError
+from lagnet.files import read_bounded, write_whole
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import JOINT_TYPES, JointFeatures
 from lagnet.models.kinds import ModelSpec, draw, settings_from
@@ -31,13 +31,14 @@ from lagnet.recordings.readers.npz_file import NpzArchive
 
 FORMAT, VERSION = "lagnet-model", 1
 DESCRIPTION, WEIGHTS = "model.json", "weights.npz"
+PREVIOUS = ".weights_previous.npz"  # of a folder whose writing was cut off between its two files
 LARGEST_DESCRIPTION, LARGEST_WEIGHTS = 2**20, 2**28  # bytes; a model of this library takes well under a megabyte
 LARGEST_ARM = 64  # joints
 DAMAGED = "copy it again or train anew"
 
 
 def save_model(model: LearnedModel, folder: str | Path) -> Path:
-    """Write model.json and weights.npz; each appears whole or not at all.
+    """Write model.json and weights.npz; an old model stays readable until the new one is there.
 
     Returns:
         The folder.
@@ -47,15 +48,14 @@ def save_model(model: LearnedModel, folder: str | Path) -> Path:
     stream = io.BytesIO()
     np.savez(stream, allow_pickle=False, **_leaves(model.dynamics))
     weights = stream.getvalue()
-    _write_whole(folder / WEIGHTS, weights)
+    previous = folder / PREVIOUS
+    if (folder / WEIGHTS).is_file() and (folder / DESCRIPTION).is_file():
+        write_whole(previous, (folder / WEIGHTS).read_bytes())  # for the description that still stands there
+    write_whole(folder / WEIGHTS, weights)
     text = json.dumps(_description(model, weights), indent=2, allow_nan=False)
-    _write_whole(folder / DESCRIPTION, text.encode())
+    write_whole(folder / DESCRIPTION, text)
+    previous.unlink(missing_ok=True)
     return folder
-
-
-def is_model_folder(folder: str | Path) -> bool:
-    """Whether a folder claims to hold a learned model."""
-    return (Path(folder) / DESCRIPTION).is_file()
 
 
 def load_model(folder: str | Path, n_dof: int | None = None) -> LearnedModel:
@@ -109,7 +109,7 @@ def _read_description(folder: Path) -> dict[str, Any]:
     if path.stat().st_size > LARGEST_DESCRIPTION:
         raise ModelError("is too large to be a model", where=str(path), next_step=DAMAGED)
     try:
-        said = json.loads(path.read_text(encoding="utf-8"))
+        said = json.loads(read_bounded(path, LARGEST_DESCRIPTION).decode("utf-8"))
     except (ValueError, RecursionError):
         raise ModelError("is damaged (not JSON)", where=str(path), next_step=DAMAGED) from None
     if not isinstance(said, Mapping) or said.get("format") != FORMAT:
@@ -155,6 +155,9 @@ def _read_weights(path: Path, promised: Any) -> bytes:
     if path.stat().st_size > LARGEST_WEIGHTS:
         raise ModelError("is too large to be a model", where=str(path), next_step=DAMAGED)
     data = path.read_bytes()
+    previous = path.with_name(PREVIOUS)
+    if hashlib.sha256(data).hexdigest() != promised and previous.is_file():
+        data = previous.read_bytes() if previous.stat().st_size <= LARGEST_WEIGHTS else data
     if hashlib.sha256(data).hexdigest() != promised:
         raise ModelError(
             f"is damaged (its checksum is not the one in {DESCRIPTION})", where=str(path), next_step=DAMAGED
@@ -188,9 +191,3 @@ def _shortest(x: np.ndarray) -> np.ndarray:
     """In single precision where that loses nothing, as for weights trained in it."""
     single = x.astype(np.float32)
     return single if np.array_equal(single, x) else x
-
-
-def _write_whole(path: Path, data: bytes) -> None:
-    partial = path.with_name(path.name + ".partial")
-    partial.write_bytes(data)
-    os.replace(partial, path)

@@ -12,7 +12,7 @@ from typing import Any
 import equinox as eqx
 
 from lagnet.models.dynamics import AbstractDynamics, solve_for_acceleration
-from lagnet.models.lagrangian import Matrix, Vector
+from lagnet.models.lagrangians.lagrangian import Matrix, Vector
 
 PARITIES = ("any", "odd")
 

@@ -17,10 +17,10 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.errors import ModelError
-from lagnet.models import euler_lagrange
 from lagnet.models.chain_network import ChainNetwork, make_chain_network
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
+from lagnet.models.lagrangians import euler_lagrange
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
 from lagnet.models.scales import Scales
 
 LARGEST_RANK = 256

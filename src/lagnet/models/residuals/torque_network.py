@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.models.features import JointFeatures
-from lagnet.models.lagrangian import Vector
+from lagnet.models.lagrangians.lagrangian import Vector
 from lagnet.models.networks import OrderedNetwork, check_widths, make_network
 from lagnet.models.scales import Scales
 

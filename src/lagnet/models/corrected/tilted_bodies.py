@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from lagnet.effects.motion import Motion
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
 
 
+@runtime_checkable
 class Named(Protocol):
     """An effect with its place and parameters."""
 

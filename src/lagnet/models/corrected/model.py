@@ -12,8 +12,10 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import Stage
 from lagnet.effects.motion import Motion
-from lagnet.errors import EffectError
-from lagnet.models.tilted_bodies import tilted_weight
+from lagnet.errors import EffectError, ModelError
+from lagnet.models.corrected.identified import IdentifiedLayer
+from lagnet.models.corrected.remainder import LearnedRemainder
+from lagnet.models.corrected.tilted_bodies import tilted_weight
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, JointVector, MassMatrix, Samples, Trajectory
 
@@ -28,6 +30,8 @@ OF_BODIES = {
 }
 EDGES = ("t0", "t1")  # start and end of what lasts for a while
 WRITTEN = {"payload", "link_inertia", "gravity_tilt"}  # what can be written into the bodies of a robot
+LAYERS = ("named", "identified", "full")
+SOLVES, SOLVED = 12, 1e-12  # steps of forward dynamics, and the torque in parts of its size at which they end
 UNORDERED = 1.0  # [s] between samples of which no order is known: nothing carries over from one to the next
 
 
@@ -48,6 +52,11 @@ class NamedEffect:
     values: Mapping[str, float]
     interval: tuple[float, float] | None = None
     recording: int | None = None
+
+    @property
+    def key(self) -> tuple:
+        """What makes the effect what it is, to be looked up by."""
+        return self.effect, self.joint, tuple(self.values.items()), self.interval, self.recording
 
     def coordinates(self) -> np.ndarray:
         """The numbers in which a refit steps: those of the law, then start and end where there are any."""
@@ -129,6 +138,8 @@ class CorrectedModel:
         recording: index of the fitted recording whose motion it is asked for; None: any other motion, where nothing
             acts that lasts for a while only.
         left: shape (dof,), torque beyond noise that it missed on held-out motion, root mean square; None: not known.
+        identified: what the recordings determine beside the effects, whatever its cause; None: nothing.
+        remainder: the learned rest; None: nothing.
     """
 
     nominal: InverseDynamics | Any
@@ -140,6 +151,8 @@ class CorrectedModel:
     sha256: str = ""
     recording: int | None = None
     left: JointVector | None = None
+    identified: IdentifiedLayer | None = None
+    remainder: LearnedRemainder | None = None
     kind: str = field(default="corrected", init=False)
 
     def __post_init__(self) -> None:
@@ -173,12 +186,14 @@ class CorrectedModel:
         model = self._written or self.nominal
         if self._written is not None:
             ordered = [e for e in ordered if e.effect not in WRITTEN]
-        return torque_with(self._motion(time, q, v, a, model.inverse_dynamics(q, v, a)), ordered)
+        motion = self._motion(time, q, v, a, model.inverse_dynamics(q, v, a))
+        return torque_with(motion, ordered) + self._beside(motion, ordered, in_order=False)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque along a motion on an even clock, with delays and memory, shape (n, dof) [N m]."""
-        load = torque_along(self.nominal, time, q, v, a)
-        return torque_with(replace(self._motion(time, q, v, a, load), held=self.held), self.effects)
+        motion = self._motion(time, q, v, a, torque_along(self.nominal, time, q, v, a))
+        named = torque_with(replace(motion, held=self.held), self.effects)
+        return named + self._beside(motion, self.effects, in_order=True)
 
     def mass_matrix(self, q: Trajectory) -> MassMatrix:
         """Joint-space inertia with rotors and changed bodies, shape (n, dof, dof)."""
@@ -202,30 +217,62 @@ class CorrectedModel:
 
     def forward_dynamics(self, q: Trajectory, v: Trajectory, tau: Trajectory) -> Trajectory:
         """Acceleration that torque tau gives at (q, v), shape (n, dof) [rad/s²]."""
-        rest = np.zeros_like(q)
-        drift = self.inverse_dynamics(q, v, rest)
-        columns = [self.inverse_dynamics(q, v, np.broadcast_to(e, q.shape)) - drift for e in np.eye(self.n_dof)]
-        return np.linalg.solve(np.stack(columns, axis=2), (tau - drift)[..., None])[..., 0]
+        a = np.zeros_like(q)
+        for _ in range(SOLVES):  # one suffices but for friction under a load that depends on the acceleration itself
+            missing = tau - self.inverse_dynamics(q, v, a)
+            if np.all(np.abs(missing) <= SOLVED * (1.0 + np.abs(tau))):
+                break
+            columns = [self.inverse_dynamics(q, v, a + e) - tau + missing for e in np.eye(self.n_dof)]
+            a = a + np.linalg.solve(np.stack(columns, axis=2), missing[..., None])[..., 0]
+        return a
 
     def with_effects(self, effects: Sequence[NamedEffect]) -> CorrectedModel:
         """The same nominal model with other effects."""
         return replace(self, effects=tuple(effects))
 
+    def with_layers(self, layers: str) -> CorrectedModel:
+        """The same correction with some of its layers: "named", "identified" (that and the named one) or "full".
+
+        Raises:
+            ModelError: another word.
+        """
+        if layers not in LAYERS:
+            raise ModelError(f"layers={layers!r} is unknown", choices=LAYERS)
+        if layers == "full":
+            return self
+        return replace(self, identified=None if layers == "named" else self.identified, remainder=None)
+
     def bodies(self) -> Any:
-        """The nominal robot with payload, link changes and tilt written into it; other effects have no place in one."""
-        return apply_to_bodies(self.nominal, self.effects)
+        """The nominal robot with all changes of bodies and tilt written into it; nothing else has a place in one."""
+        named = apply_to_bodies(self.nominal, self.effects)
+        if self._body_change is None:
+            return named
+        return named.with_inertial_parameters(named.inertial_parameters() + self._body_change)
+
+    @property
+    def regressor_source(self) -> Any:
+        """The model whose regressor holds for changes of these bodies, under gravity as named; None without bodies."""
+        tilts = [e for e in self.effects if e.effect == "gravity_tilt" and e.interval is None]
+        if not hasattr(self.nominal, "joint_torque_regressor"):
+            return None
+        return apply_to_bodies(self.nominal, tilts) if tilts else self.nominal
+
+    @property
+    def _body_change(self) -> np.ndarray | None:
+        return None if self.identified is None else self.identified.bodies
 
     @cached_property
     def _changes_bodies(self) -> bool:
-        return any(e.effect in WRITTEN for e in self.effects)
+        return self._body_change is not None or any(e.effect in WRITTEN for e in self.effects)
 
     @cached_property
     def _written(self) -> Any:
         """The robot with its changed bodies, many times quicker than their regressors; None where it cannot be had."""
-        if isinstance(self.nominal, CorrectedModel) or not self._changes_bodies:
+        if isinstance(self.nominal, CorrectedModel) or not any(e.effect in WRITTEN for e in self.effects):
             return None
         try:
-            return self._changed if hasattr(self.nominal, "with_inertial_parameters") else None
+            possible = hasattr(self.nominal, "with_inertial_parameters")
+            return apply_to_bodies(self.nominal, self.effects) if possible else None
         except ValueError:  # a first moment without mass
             return None
 
@@ -242,7 +289,24 @@ class CorrectedModel:
         else:
             load = part(q, v, a)
         bodies = [e for e in self.effects if effect_named(e.effect).stage == "body" and e.interval is None]
-        return torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
+        named = torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, load), bodies)
+        if self.identified is None:
+            return named
+        changed = self.identified.body_torque(self._source, q, v, a)
+        return named + changed + a @ self.identified.joint_inertia(self.n_dof)
+
+    def _beside(self, motion: Motion, effects: Sequence[NamedEffect], in_order: bool) -> Trajectory:
+        """Torque of the layers beyond the named one, shape (n, dof); `effects` are those that `motion.load` lacks."""
+        learned = 0.0 if self.remainder is None else self.remainder.torque(motion.q, motion.v, motion.a)
+        if self.identified is None:
+            return np.zeros_like(motion.load) + learned
+        changed = self.identified.body_torque(self._source, motion.q, motion.v, motion.a)
+        load = load_before(motion, effects, "torque") + changed
+        return changed + self.identified.term_torque(motion, load, in_order) + learned
+
+    @cached_property
+    def _source(self) -> Any:
+        return self.regressor_source
 
     def _motion(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory, load: Trajectory) -> Motion:
         seen = (time, q, v, a, load, self.slow, self.nominal)
@@ -258,19 +322,27 @@ def torque_along(model: Any, time: Samples, q: Trajectory, v: Trajectory, a: Tra
 
 def has_real_bodies(model: CorrectedModel) -> bool:
     """Whether some distribution of mass has every corrected body, so that a robot file may hold it."""
-    changed = changed_bodies(model.nominal, model.effects) != model.nominal.inertial_parameters()
-    rows = changed.any(axis=1)
-    return bool(np.all(is_physically_consistent(changed_bodies(model.nominal, model.effects)[rows])))
+    own = model.nominal.inertial_parameters()
+    bodies = changed_bodies(model.nominal, model.effects)
+    if model.identified is not None and model.identified.bodies is not None:
+        bodies = bodies + model.identified.bodies
+    return bool(np.all(is_physically_consistent(bodies[(bodies != own).any(axis=1)])))
 
 
 def changed_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> np.ndarray:
     """Ten inertial parameters of every link with payload and link changes added, shape (dof, 10)."""
-    parameters = nominal.inertial_parameters().copy()
+    own = nominal.inertial_parameters()
+    return own + named_body_change(len(own), effects)
+
+
+def named_body_change(n_dof: int, effects: Sequence[NamedEffect]) -> np.ndarray:
+    """What payload and link changes add to the ten inertial parameters of every link, shape (dof, 10)."""
+    change = np.zeros((n_dof, 10))
     for effect in effects:
         law: Any = effect_named(effect.effect)
         if law.name in ("payload", "link_inertia") and effect.interval is None:
-            parameters[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
-    return parameters
+            change[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
+    return change
 
 
 def apply_to_bodies(nominal: Any, effects: Sequence[NamedEffect]) -> Any:
