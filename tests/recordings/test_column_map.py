@@ -9,8 +9,8 @@ import pytest
 import scipy.io
 
 from lagnet.errors import RecordingError
-from lagnet.recordings.column_map import ColumnMap, read_column_map
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.column_map import ColumnMap, read_column_map
+from lagnet.recordings.loading.load import load_recording
 
 
 def write(folder: Path, text: str) -> Path:

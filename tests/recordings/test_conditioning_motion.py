@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lagnet.recordings.bandwidth import choose_bandwidth
-from lagnet.recordings.conditioning import condition, motion_at_samples
-from lagnet.recordings.noise import white_noise
+from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
+from lagnet.recordings.conditioning.condition import condition, motion_at_samples
+from lagnet.recordings.conditioning.noise import white_noise
+from lagnet.recordings.conditioning.smoothing import derivative, even_clock, low_pass, resample
+from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.smoothing import derivative, even_clock, low_pass, resample
-from lagnet.recordings.stretches import stretches_of
 
 RATE = 200.0  # [Hz]
 OMEGA = np.array([2.0, 3.1])  # [rad/s], half a hertz: far below every bandwidth

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagnet.recordings.conditioning import condition
-from lagnet.recordings.noise import band_noise, motion_bandwidth, white_noise
+from lagnet.recordings.conditioning.condition import condition
+from lagnet.recordings.conditioning.noise import band_noise, motion_bandwidth, white_noise
+from lagnet.recordings.conditioning.smoothing import derivative, low_pass
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.smoothing import derivative, low_pass
 
 RATE, SAMPLES = 500.0, 6000
 # The sixth difference correlates neighbours: the variance of its mean square is 2 Σ ρ_k² / n with Σ ρ_k² = 4.6 over

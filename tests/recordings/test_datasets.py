@@ -16,10 +16,10 @@ import pytest
 import scipy.io
 
 from lagnet.errors import DataError
-from lagnet.recordings import download as download_module
-from lagnet.recordings.datasets import DataFile, DataSet, data_sets, fetch
-from lagnet.recordings.derived import RECIPES
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.datasets import download as download_module
+from lagnet.recordings.datasets.derived import RECIPES
+from lagnet.recordings.datasets.fetch import DataFile, DataSet, data_sets, fetch
+from lagnet.recordings.loading.load import load_recording
 
 CONTENT = b"a" * 300_000
 
@@ -151,7 +151,7 @@ def test_local_copies_come_first_and_are_checked_too(
     out = tmp_path / "out"
     assert fetch("arm", out, sets=sets).paths["run.csv"].read_bytes() == CONTENT
     assert everything_in(out) == [out / "arm" / "run.csv"]
-    monkeypatch.setattr("lagnet.recordings.datasets.cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr("lagnet.recordings.datasets.fetch.cache_folder", lambda: tmp_path / "cache")
     assert fetch("arm", sets=sets).paths["run.csv"] == local
     assert server.asked == []
     local.write_bytes(b"something else")

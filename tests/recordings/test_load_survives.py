@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lagnet.errors import RecordingError
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.load import load_recording
 
 HEADER = "time,q_0,q_1,tau_0,tau_1"
 
@@ -167,7 +167,7 @@ def test_torque_is_preferred_to_current(tmp_path: Path) -> None:
     both[1:] = [line + ",7,7" for line in both[1:]]
     found = load(tmp_path, "\n".join(both) + "\n")
     np.testing.assert_array_equal(found.tau, load(tmp_path, WHOLE).tau)
-    assert found.warnings == ("holds torque and current: the current is not used",)
+    assert found.warnings == ("holds torque and current: the torque is used",)
 
 
 @pytest.mark.parametrize("cell", ["0.1234567", "12.5000000", "-3.25e-01", "walk_12"])

@@ -15,21 +15,21 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from lagnet.errors import RecordingError
-from lagnet.recordings.column_map import ColumnMap
-from lagnet.recordings.load import READERS, load_recording
+from lagnet.recordings.loading.column_map import ColumnMap
+from lagnet.recordings.loading.load import READERS, load_recording
 from lagnet.recordings.readers.source import RowNames
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.signals import DRIVE_SIGNALS, JOINT_SIGNALS
 from lagnet.recordings.writing import WRITERS, write_recording
 
 JOINTS = ("pan", "lift", "elbow")
 FINITE = st.floats(-1e6, 1e6, allow_subnormal=True)
-FIELDS = ("time", "q", "v", "a", "tau", "trajectory")
+FIELDS = ("time", "trajectory", *JOINT_SIGNALS)
 
 
 def write_mat(recording: Recording, path: Path) -> Path:
     """MATLAB's view of a recording; the product reads this format and does not write it."""
-    arrays = {name: getattr(recording, name) for name in ("time", "q", "v", "a", "tau")}
-    arrays = {name: values for name, values in arrays.items() if values is not None}
+    arrays = {name: getattr(recording, name) for name in ("time", *recording.signals)}
     if recording.trajectory_names != ("0",):
         arrays["trajectory"] = np.array([int(name) for name in recording.trajectory_names])[recording.trajectory]
     scipy.io.savemat(path, arrays, do_compression=True)
@@ -64,14 +64,16 @@ def recordings(draw) -> Recording:
     time = draw(st.floats(-1e5, 1e9)) + np.arange(n) * draw(st.sampled_from([0.001, 0.0078125, 0.1]))
     motions = draw(st.lists(st.integers(-5, 99), min_size=1, max_size=3, unique=True))
     labels = np.arange(n) * len(motions) // n
+    told = draw(st.sets(st.sampled_from(DRIVE_SIGNALS)))
     return Recording(
         time=time,
         q=draw(matrix.map(lambda q: np.clip(q, -3, 3))),
-        tau=draw(matrix),
+        tau=draw(st.none() | matrix) if "command" in told else draw(matrix),
         joints=JOINTS[:n_dof],
         a=draw(st.none() | matrix),
         trajectory=labels,
         trajectory_names=tuple(map(str, motions)),
+        **{name: draw(matrix) for name in sorted(told)},
     )
 
 
@@ -149,7 +151,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "replace", fail)
+    monkeypatch.setattr("lagnet.files.os.replace", fail)
     with pytest.raises(OSError, match="No space left"):
         write_recording(swing(n_dof=1), path)
     assert path.read_bytes() == before

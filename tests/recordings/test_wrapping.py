@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.load import load_recording
 
 TIME = 0.01 * np.arange(600)
 ROLL = SimpleNamespace(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import io
 import json
-import os
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +15,7 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
 from lagnet.errors import RecordingError
+from lagnet.files import write_whole
 from lagnet.recordings.readers.parquet_file import JOINTS_KEY
 from lagnet.recordings.recording import Recording
 
@@ -26,7 +26,7 @@ def write_recording(recording: Recording, path: str | Path) -> Path:
     """Store a recording; a reader gets every number back bit for bit.
 
     Args:
-        recording: what to store; absent velocities and accelerations stay absent.
+        recording: what to store; absent signals stay absent.
         path: .csv, .csv.gz, .parquet or .npz file; replaced in one step, so that no half-written file is ever seen.
 
     Returns:
@@ -40,23 +40,16 @@ def write_recording(recording: Recording, path: str | Path) -> Path:
     if suffix is None:
         raise RecordingError(f"cannot write the format {path.suffix!r}", where=str(path), choices=WRITERS)
     content = WRITERS[suffix](recording)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(path, content)
     return path
 
 
 def recording_table(recording: Recording) -> pa.Table:
     """The recording as a table with the columns of the recording contract."""
     columns: dict[str, np.ndarray] = {"time": recording.time}
-    for kind in ("q", "v", "a", "tau"):
+    for kind in recording.signals:
         values = getattr(recording, kind)
-        if values is not None:
-            columns |= {f"{kind}_{i}": values[:, i] for i in range(recording.n_dof)}
+        columns |= {f"{kind}_{i}": values[:, i] for i in range(recording.n_dof)}
     if _labelled(recording):
         columns["trajectory"] = _labels(recording)
     return pa.table(columns)
@@ -89,17 +82,16 @@ def _parquet(recording: Recording) -> bytes:
 
 
 def _npz(recording: Recording) -> bytes:
-    arrays = {"time": recording.time, "q": recording.q, "v": recording.v, "a": recording.a, "tau": recording.tau}
+    arrays = {name: getattr(recording, name) for name in ("time", *recording.signals)}
     arrays |= {"joints": np.asarray(recording.joints, dtype=str)}
     if _labelled(recording):
         arrays["trajectory"] = _labels(recording)
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, values in arrays.items():
-            if values is not None:
-                content = io.BytesIO()
-                np.lib.format.write_array(content, values, allow_pickle=False)
-                archive.writestr(zipfile.ZipInfo(f"{name}.npy", EPOCH), content.getvalue(), zipfile.ZIP_DEFLATED)
+            content = io.BytesIO()
+            np.lib.format.write_array(content, values, allow_pickle=False)
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy", EPOCH), content.getvalue(), zipfile.ZIP_DEFLATED)
     return stream.getvalue()
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.errors import RecordingError
+from lagnet.recordings.signals import JOINT_SIGNALS
 
-JOINT_KINDS = ("q", "v", "a", "tau", "current")
+MOST_COLUMNS = 20_000  # of all arrays together
 
 
 def columns_of(shapes: dict[str, tuple[int, ...]]) -> dict[str, tuple[str, int | None]]:
@@ -18,8 +19,13 @@ def columns_of(shapes: dict[str, tuple[int, ...]]) -> dict[str, tuple[str, int |
     found: dict[str, tuple[str, int | None]] = {}
     for name, shape in shapes.items():
         if len(shape) == 1 or (len(shape) == 2 and 1 in shape):
-            found[f"{name}_0" if name in JOINT_KINDS else name] = (name, None)
+            found[f"{name}_0" if name in JOINT_SIGNALS else name] = (name, None)
         elif len(shape) == 2:
+            if len(found) + shape[1] > MOST_COLUMNS:
+                raise RecordingError(
+                    f"{name} has {shape[1]} columns, at most {MOST_COLUMNS} are read",
+                    next_step="give arrays of shape (n_samples, n_dof), not the other way round",
+                )
             found |= {f"{name}_{i}": (name, i) for i in range(shape[1])}
     return found
 

@@ -106,6 +106,8 @@ def _next_line(text: bytes, start: int) -> int:
 
 def _separator(header: str) -> str:
     counts = {sign: header.count(sign) for sign in ",;\t"}
+    if not any(counts.values()) and " " in header.strip():
+        return " "
     best = max(counts, key=lambda sign: counts[sign])
     # Decimal commas in a headerless semicolon file can outnumber the semicolons.
     return ";" if counts[";"] and best == "," and counts[","] <= counts[";"] + 1 else best

@@ -61,7 +61,7 @@ class MatSource:
             raise RecordingError(
                 "holds rows of 28 columns without time, as the SARCOS files do: shuffled samples are no motion",
                 where=where,
-                next_step="load it with lagnet.recordings.sarcos.load_sarcos",
+                next_step="load it with lagnet.recordings.datasets.sarcos.load_sarcos",
             )
 
     @property

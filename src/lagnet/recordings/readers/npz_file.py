@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import lzma
+import struct
 import zipfile
 import zlib
 from collections.abc import Sequence
@@ -14,6 +16,18 @@ from lagnet.errors import RecordingError
 from lagnet.recordings.readers.arrays import column, columns_of, expand_offsets
 from lagnet.recordings.readers.source import Table, refuse_if_huge, table_of
 
+DAMAGED = (  # what archives fail with: encrypted, of a method that is not known, cut off, or of wrong sums
+    ValueError,
+    EOFError,
+    OSError,
+    OverflowError,
+    zlib.error,
+    lzma.LZMAError,
+    zipfile.BadZipFile,
+    RuntimeError,
+    NotImplementedError,
+    struct.error,
+)
 COPY_AGAIN = "copy or write it again"
 
 
@@ -24,7 +38,7 @@ class NpzArchive:
         self._where = where
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(data))
-        except zipfile.BadZipFile:
+        except (zipfile.BadZipFile, ValueError, OverflowError, OSError, NotImplementedError, struct.error):
             raise RecordingError(
                 "is no NumPy archive, or is damaged", where=where, next_step="write it with numpy.savez_compressed"
             ) from None
@@ -57,7 +71,7 @@ class NpzArchive:
         try:
             with self._zip.open(f"{name}.npy") as stream:
                 return npy.read_array(stream, allow_pickle=False)
-        except (ValueError, EOFError, OSError, zlib.error, zipfile.BadZipFile):
+        except DAMAGED:
             raise RecordingError(f"array {name} is damaged", where=self._where, next_step=COPY_AGAIN) from None
 
     def _header(self, member: zipfile.ZipInfo) -> tuple[tuple[int, ...], np.dtype]:
@@ -66,7 +80,7 @@ class NpzArchive:
                 version = npy.read_magic(stream)
                 read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
                 shape, _, dtype = read(stream)
-        except (ValueError, EOFError, OSError, zlib.error, zipfile.BadZipFile, RuntimeError, NotImplementedError):
+        except DAMAGED:
             raise RecordingError(
                 f"array {member.filename} is damaged or encrypted", where=self._where, next_step=COPY_AGAIN
             ) from None

@@ -49,3 +49,18 @@ def unwrap(
     starts = np.flatnonzero(np.r_[True, np.diff(index) != 0])
     shift -= shift[starts][np.cumsum(np.r_[True, np.diff(index) != 0]) - 1]
     return q - TURN * shift, told
+
+
+def beside(command: np.ndarray, q: np.ndarray, unwrapped: np.ndarray) -> np.ndarray:
+    """Commands on the same whole turns as the positions that they were recorded with.
+
+    Args:
+        command: shape (n, dof), commanded positions [rad], on the scale of the file.
+        q: shape (n, dof), positions as recorded; unwrapped: without jumps of whole turns.
+    """
+    shift = unwrapped - q
+    moved = np.any(shift != 0, axis=0)
+    turned = command + shift
+    # A command passes the end of the scale some samples before its joint does.
+    turned -= TURN * np.round((turned - unwrapped) / TURN)
+    return np.where(moved, turned, command)

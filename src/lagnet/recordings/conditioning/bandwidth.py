@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lagnet.recordings.noise import band_noise, motion_bandwidth
+from lagnet.recordings.conditioning.noise import band_noise, motion_bandwidth
+from lagnet.recordings.conditioning.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
+from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
-from lagnet.recordings.stretches import stretches_of
 
 OVER_MOTION = 12.0  # bandwidth over that of the motion: friction at reversals is quicker than the motion
 LEAST, MOST = 5.0, 40.0  # [Hz] limits of the bandwidth
@@ -64,6 +64,5 @@ def _accelerations(recordings: Sequence[Recording], bandwidth: float) -> np.ndar
 
 def _longest_even(recording: Recording) -> tuple[np.ndarray, float]:
     """Positions of the longest stretch on an even clock, and its rate: a jittering clock would look like motion."""
-    rows = max(stretches_of(recording), key=lambda r: r.stop - r.start)
-    time = recording.time[rows]
-    return resample(time, recording.q[rows], even_clock(time, recording.rate)), recording.rate
+    used = recording.used(max(stretches_of(recording), key=lambda r: r.stop - r.start))
+    return resample(used.time, used.q, even_clock(used.time, recording.rate)), recording.rate

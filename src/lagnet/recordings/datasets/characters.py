@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lagnet.errors import RecordingError
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.readers.npz_file import NpzArchive
 from lagnet.recordings.recording import Recording
 from lagnet.types import MassMatrix, Trajectory

@@ -12,8 +12,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from lagnet.errors import DataError, LagnetError, closest
-from lagnet.recordings.derived import RECIPES
-from lagnet.recordings.download import Progress, download
+from lagnet.recordings.datasets.derived import RECIPES
+from lagnet.recordings.datasets.download import Progress, download
 
 LOCAL_COPIES = "LAGNET_DATA_DIR"
 
@@ -75,7 +75,7 @@ def data_sets(manifest: str | None = None) -> Mapping[str, DataSet]:
     Args:
         manifest: JSON text; the package's own where None.
     """
-    text = files("lagnet.recordings").joinpath("manifest.json").read_text() if manifest is None else manifest
+    text = files("lagnet.recordings.datasets").joinpath("manifest.json").read_text() if manifest is None else manifest
     return {name: _data_set(name, entry) for name, entry in sorted(json.loads(text).items())}
 
 
@@ -214,7 +214,7 @@ class _Errand:
 
 def _verify_content(path: Path, note: str) -> None:
     """The manifest's note states the shape of a file without checksum, e.g. "44484 x 28; ..."."""
-    from lagnet.recordings.sarcos import load_sarcos
+    from lagnet.recordings.datasets.sarcos import load_sarcos
 
     rows = int(note.split("x", 1)[0])
     found = len(load_sarcos(path))

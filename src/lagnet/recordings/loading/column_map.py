@@ -23,9 +23,10 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import RecordingError, closest
+from lagnet.files import read_bounded
+from lagnet.recordings.signals import JOINT_SIGNALS, kind_of
 
-JOINT_KINDS = ("q", "v", "a", "tau", "current")
-KINDS = ("time", "trajectory", *JOINT_KINDS)
+KINDS = ("time", "trajectory", *JOINT_SIGNALS)
 SECTIONS = ("columns", "scale", "offset", "torque_constant")
 MAX_BYTES = 1024**2
 
@@ -53,7 +54,7 @@ class ColumnMap:
             for name in getattr(self, section):
                 self._check_name(section, name)
         for name, file_name in self.columns.items():
-            if not isinstance(file_name, str) or not file_name:
+            if not isinstance(file_name, str) or (not file_name and kind_of(name) is None):
                 raise self._error(f"[columns] {name} must be the file's column name, in quotes")
         for name, factor in self.scale.items():
             if not _is_number(factor) or factor == 0:
@@ -76,6 +77,8 @@ class ColumnMap:
         pattern = self.columns.get(kind)
         if pattern is None:
             return None
+        if not pattern:
+            return ""
         if "{" not in pattern:
             return f"{pattern}_{index}"
         return pattern.replace("{i}", str(index)).replace("{i1}", str(index + 1)).replace("{joint}", joint)
@@ -100,8 +103,7 @@ class ColumnMap:
         return default
 
     def _check_name(self, section: str, name: str) -> None:
-        kind = name.split("_", 1)[0]
-        if name not in KINDS and (kind not in JOINT_KINDS or name == kind + "_"):
+        if name not in KINDS and kind_of(name) is None:
             near = closest(name, KINDS)
             raise self._error(
                 f"[{section}] {name} is no column of ours" + (f", did you mean {near}?" if near else ""),
@@ -140,12 +142,9 @@ def read_column_map(path: str | Path) -> ColumnMap:
 
 def _parse(path: Path, where: str) -> dict[str, Any]:
     try:
-        with path.open("rb") as stream:
-            text = stream.read(MAX_BYTES + 1)
+        text = read_bounded(path, MAX_BYTES)
     except OSError as error:
         raise RecordingError(f"cannot be read ({error.strerror})", where=where) from None
-    if len(text) > MAX_BYTES:
-        raise RecordingError("is too long for a mapping file", where=where)
     try:
         return tomllib.loads(text.decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

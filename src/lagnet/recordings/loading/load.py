@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from importlib import import_module
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lagnet.errors import RecordingError
-from lagnet.recordings import clock, units
-from lagnet.recordings.column_map import ColumnMap, read_column_map
-from lagnet.recordings.layout import Header, Layout, find_layout
-from lagnet.recordings.readers.source import MAX_BYTES, Table, TableSource, refuse_if_huge
+from lagnet.recordings.loading import clock, units
+from lagnet.recordings.loading.column_map import ColumnMap, read_column_map
+from lagnet.recordings.loading.layout import Header, Layout, find_layout
+from lagnet.recordings.loading.opening import READERS, Progress, open_source
+from lagnet.recordings.loading.wrapping import beside, unwrap
+from lagnet.recordings.readers.logs.log_source import LogSource
+from lagnet.recordings.readers.source import RowNames, Table
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.wrapping import unwrap
+from lagnet.recordings.signals import DRIVE_SIGNALS, DRIVING, OPTIONAL
 
-READERS = {
-    ".csv": ("lagnet.recordings.readers.csv_file", "CsvSource"),
-    ".csv.gz": ("lagnet.recordings.readers.csv_file", "CsvSource"),
-    ".parquet": ("lagnet.recordings.readers.parquet_file", "ParquetSource"),
-    ".npz": ("lagnet.recordings.readers.npz_file", "NpzSource"),
-    ".mat": ("lagnet.recordings.readers.mat_file", "MatSource"),
-}
+__all__ = ["READERS", "load_recording", "open_source"]
 MIN_SAMPLES = 20  # fewer say nothing about noise, and cannot be filtered or split
+FAR_TOO_LARGE = 1e12  # in SI units: beyond any position, speed, torque or current of a joint
+FAR_TOO_LATE = 1e19  # [s]: beyond nanoseconds since 1970 that were not scaled
 SHORT_MOTION = 5  # samples of one trajectory below which it cannot be differentiated
 
 
@@ -56,17 +53,19 @@ def load_recording(
     columns: str | Path | ColumnMap | None = None,
     torque_constant: Sequence[float] | np.ndarray | float | None = None,
     limits: np.ndarray | None = None,
+    progress: Progress | None = None,
 ) -> Recording:
-    """Read what a robot did: positions, torques and, where recorded, velocities and accelerations, all in SI units.
+    """Read what a robot did: positions, torques or commands, and what else was recorded, all in SI units.
 
     Args:
-        path: .csv, .csv.gz, .parquet, .npz or .mat file.
+        path: table (.csv, .csv.gz, .parquet, .npz, .mat), ROS bag, LeRobot folder or another log: see docs.
         robot: anything with `joints` and `n_dof`, and perhaps `position_lower`, `position_upper` and `joint_types`.
         n_dof: number of joints, where there is no robot; None to take it from the file.
         joints: joint names, where there is no robot; None for the file's names or joint_0, joint_1, ….
         columns: mapping of foreign column names and units, or the TOML file that holds it.
         torque_constant: shape (dof,), [N m/A] or [N/A], turns motor current into joint torque; one number serves all.
         limits: shape (dof, 2), lower and upper position [rad] or [m], in place of the robot's; inf where unlimited.
+        progress: told (name, done, expected or None) while a long log is read.
 
     Returns:
         The recording on the file's own clock; `warnings` tells what was survived.
@@ -77,37 +76,13 @@ def load_recording(
     where = str(path)
     column_map = columns if isinstance(columns, ColumnMap) else read_column_map(columns) if columns else ColumnMap()
     facts = _facts(robot, joints, n_dof, torque_constant, limits, column_map, where)
-    source, sha256 = open_source(path)
-    layout = find_layout(Header(source.names, source.joints, column_map, where), facts.joints, facts.n_dof)
+    source, sha256 = open_source(path, progress)
+    layout = find_layout(
+        Header(source.names, source.joints, column_map, where, isinstance(source, LogSource)), facts.joints, facts.n_dof
+    )
     table = source.read(layout.numbers, layout.trajectory)
     del source  # the file's bytes are needed no more: half of the memory of a long recording
     return _Assembly(table, layout, column_map, facts, where).recording(sha256)
-
-
-def open_source(path: str | Path) -> tuple[TableSource, str]:
-    """The opened file and the sha256 of its bytes.
-
-    Raises:
-        RecordingError: no such file, unknown suffix, empty, or too big.
-    """
-    path, where = Path(path), str(path)
-    suffix = next((s for s in sorted(READERS, key=len, reverse=True) if path.name.lower().endswith(s)), None)
-    if suffix is None:
-        raise RecordingError(f"unknown kind of file {path.suffix!r}", where=where, choices=READERS)
-    if not path.is_file():
-        what = "is a folder, not a recording" if path.is_dir() else "does not exist"
-        raise RecordingError(what, where=where, next_step="check the path")
-    refuse_if_huge(path.stat().st_size, where)
-    try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise RecordingError(f"cannot be read ({error.strerror})", where=where) from None
-    if not data:
-        raise RecordingError("the file is empty", where=where, next_step="record again or give another file")
-    module, name = READERS[suffix]
-    reader: Callable[[bytes, str], TableSource] = getattr(import_module(module), name)
-    return reader(data, where), hashlib.sha256(data).hexdigest()
 
 
 def _facts(
@@ -157,10 +132,11 @@ class _Assembly:
     where: str
 
     def recording(self, sha256: str) -> Recording:
-        rows, layout = self.table.rows, self.layout
-        time = self.table.numbers[layout.time] * self.column_map.factor("time") + self.column_map.added("time")
+        rows = self.table.rows
+        time = self.table.numbers[self.layout.time] * self.column_map.factor("time") + self.column_map.added("time")
         self._refuse_few(time.size)
-        self._refuse_not_finite()
+        layout, gaps_in = self._without_broken_signals()
+        self._refuse_not_finite(layout)
         self._refuse_empty_labels()
         motions = clock.motions(self.table.labels, time.size, rows, self.where)
         clock.refuse_backward(time, motions.index, self.table.labels is not None, rows, self.where)
@@ -169,16 +145,21 @@ class _Assembly:
         kept = slice(None) if keep.all() else keep
         signals = {kind: self._signal(kind)[kept] for kind in layout.signals}
         time, index = time[kept], motions.index[kept]
+        self._refuse_far_too_large(time, signals, rows, keep)
         self._refuse_wrong_units(time, index, signals)
         still_there = rows.without(np.flatnonzero(~keep))
         turning = np.array([kind != "prismatic" for kind in self._ranges().types])
-        signals["q"], wraps = unwrap(signals["q"], index, turning, layout.joints, still_there)
+        raw = signals["q"]
+        signals["q"], wraps = unwrap(raw, index, turning, layout.joints, still_there)
+        if "command" in signals:
+            signals["command"] = beside(signals["command"], raw, signals["q"])
+        tau, no_constants = self._torque(signals)
         short = self._short_motions(index, motions.names)
-        warnings = (*self.table.warnings, *layout.warnings, *repeats, *wraps, *short)
+        warnings = (*self.table.warnings, *layout.warnings, *gaps_in, *no_constants, *repeats, *wraps, *short)
         return Recording(
             time=time,
             q=signals["q"],
-            tau=signals["tau"] if "tau" in signals else self._torque(signals["current"]),
+            tau=tau,
             joints=layout.joints,
             v=signals.get("v"),
             a=signals.get("a"),
@@ -190,6 +171,22 @@ class _Assembly:
                 *warnings,
                 *clock.describe_steps(time, index, motions.names, still_there),
             ),
+            **{kind: signals.get(kind) for kind in ("current", *DRIVE_SIGNALS)},
+        )
+
+    def _without_broken_signals(self) -> tuple[Layout, tuple[str, ...]]:
+        """The layout without signals that can be missed and have cells that are no numbers, and what to tell."""
+        broken: dict[str, tuple[str, int]] = {}
+        driving = [kind for kind in DRIVING if kind in self.layout.signals]
+        for kind in set(self.layout.signals) & set(OPTIONAL) - {"v", "a"}:
+            for name in self.layout.signals[kind]:
+                bad = np.flatnonzero(~np.isfinite(self.table.numbers[name]))
+                if bad.size and driving != [kind]:
+                    broken.setdefault(kind, (name, int(bad[0])))
+        kept = {kind: names for kind, names in self.layout.signals.items() if kind not in broken}
+        return replace(self.layout, signals=kept), tuple(
+            f"{self.table.rows.of(row)}, column {name}: is not a number: {kind} was not read"
+            for kind, (name, row) in sorted(broken.items())
         )
 
     def _refuse_few(self, n: int) -> None:
@@ -200,9 +197,10 @@ class _Assembly:
                 next_step="record a longer motion",
             )
 
-    def _refuse_not_finite(self) -> None:
+    def _refuse_not_finite(self, layout: Layout) -> None:
         worst: tuple[int, str] | None = None
-        for name, values in self.table.numbers.items():
+        numbers = {name: self.table.numbers[name] for name in layout.numbers}
+        for name, values in numbers.items():
             bad = np.flatnonzero(~np.isfinite(values))
             if bad.size and (worst is None or bad[0] < worst[0]):
                 worst = int(bad[0]), name
@@ -211,13 +209,29 @@ class _Assembly:
         row, name = worst
         value = self.table.numbers[name][row]
         what = "is not a number (NaN or an empty cell)" if np.isnan(value) else "is infinite"
-        count = sum(int(np.sum(~np.isfinite(values))) for values in self.table.numbers.values())
+        count = sum(int(np.sum(~np.isfinite(values))) for values in numbers.values())
         raise RecordingError(
             f"{self.table.rows.of(row)}, column {name}: {what}"
             + (f" ({count} such cells in all)" if count > 1 else ""),
             where=self.where,
             next_step="remove these samples, or split the recording there with a trajectory column",
         )
+
+    def _refuse_far_too_large(
+        self, time: np.ndarray, signals: dict[str, np.ndarray], rows: RowNames, keep: np.ndarray
+    ) -> None:
+        """Numbers that no joint has, such as what is read from freed memory, are as little numbers as NaN is."""
+        for kind, values in {"time": time[:, None], **signals}.items():
+            bad = np.argwhere(np.abs(values) > (FAR_TOO_LATE if kind == "time" else FAR_TOO_LARGE))
+            if bad.size:
+                sample, joint = (int(x) for x in bad[0])
+                column = kind if kind == "time" else f"{kind}_{joint}"
+                raise RecordingError(
+                    f"{rows.of(int(np.flatnonzero(keep)[sample]))}, column {column}: {values[sample, joint]:.4g} is"
+                    f" no such quantity" + (f" ({len(bad)} such cells in all)" if len(bad) > 1 else ""),
+                    where=self.where,
+                    next_step="remove these samples, or split the recording there with a trajectory column",
+                )
 
     def _refuse_empty_labels(self) -> None:
         empty = [] if self.table.labels is None else np.flatnonzero(self.table.labels == "")
@@ -253,9 +267,13 @@ class _Assembly:
         if "v" in signals and "v" not in self.column_map.scale:
             units.refuse_degrees_per_second(time, index, signals["q"], signals["v"], joints, self.where)
 
-    def _torque(self, current: np.ndarray) -> np.ndarray:
-        """Joint torque from motor current, shape (n, dof), [N m] or [N]."""
+    def _torque(self, signals: dict[str, np.ndarray]) -> tuple[np.ndarray | None, tuple[str, ...]]:
+        """Joint torque, recorded or from motor current, shape (n, dof), [N m] or [N], or None; and what to tell."""
+        if "tau" in signals or "current" not in signals:
+            return signals.get("tau"), ()
         constants, n_dof = self.facts.torque_constant, len(self.layout.joints)
+        if constants is None and "command" in signals:
+            return None, ("holds motor current without torque constants: there is no torque, only commands",)
         if constants is None:
             raise RecordingError(
                 "holds motor current, which needs a torque constant [N m/A] per joint",
@@ -269,7 +287,7 @@ class _Assembly:
                 where=self.where,
                 next_step=f"give {n_dof} numbers [N m/A] other than zero, in joint order",
             )
-        return current * constants
+        return signals["current"] * constants, ()
 
     def _short_motions(self, index: np.ndarray, names: tuple[str, ...]) -> tuple[str, ...]:
         short = np.flatnonzero(np.bincount(index, minlength=len(names)) < SHORT_MOTION)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from lagnet.recordings.bandwidth import choose_bandwidth
-from lagnet.recordings.noise import band_noise, white_noise
+from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
+from lagnet.recordings.conditioning.noise import band_noise, white_noise
+from lagnet.recordings.conditioning.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
+from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
-from lagnet.recordings.stretches import stretches_of
+from lagnet.recordings.signals import DRIVE_SIGNALS
 
 WIDER = 2.0  # motion is filtered this much wider than torque, so that its own filter does not colour the torque
 DISAGREEMENT = 0.05  # recorded velocity further than this from that of the positions is not used
@@ -28,6 +29,8 @@ class Stretch:
         tau: shape (n, dof), recorded torque on the same clock, not filtered.
         recording: index of the recording it is part of.
         first, last: rows of the recording at its two ends, inclusive.
+        drive: per drive signal ("command", "temperature", …) that was recorded its values of shape (n, dof), held
+            from sample to sample: commands are steps, which a spline would overshoot.
     """
 
     time: np.ndarray
@@ -38,6 +41,7 @@ class Stretch:
     recording: int
     first: int
     last: int
+    drive: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +81,12 @@ def condition(
         recordings: one or more of the same joints.
         bandwidth: [Hz], chosen from the data if not given.
         torque_shift: torques are read that much later than their stamps say [s].
+
+    Raises:
+        RecordingError: a recording without torque.
     """
+    for recording in recordings:
+        _ = recording.torque
     rate = float(np.median([r.rate for r in recordings]))
     noise = _noise(recordings, rate)
     chosen = choose_bandwidth(recordings, noise) if bandwidth is None else bandwidth
@@ -86,7 +95,7 @@ def condition(
     stretches = []
     for index, recording in enumerate(recordings):
         for rows in stretches_of(recording):
-            if rows.stop - rows.start >= SHORTEST:
+            if len(recording.used(rows)) >= SHORTEST:
                 stretches.append(_stretch(recording, rows, index, rate, motion_band, blend, torque_shift))
     noise_q = band_noise(noise["q"], rate, motion_band)
     noise_v, noise_a = _derived_noise(noise, rate, chosen, motion_band, blend)
@@ -109,16 +118,23 @@ def condition(
 def _stretch(
     recording: Recording, rows: slice, index: int, rate: float, motion_band: float, blend: float | None, shift: float
 ) -> Stretch:
-    time = recording.time[rows]
+    used = recording.used(rows)
+    time = used.time
     clock = even_clock(time, rate)
-    q = low_pass(resample(time, recording.q[rows], clock), rate, motion_band)
+    q = low_pass(resample(time, used.q, clock), rate, motion_band)
     v = derivative(clock, q)
-    if blend is not None and recording.v is not None:
-        difference = low_pass(resample(time, recording.v[rows], clock), rate, motion_band) - v
+    if blend is not None and used.v is not None:
+        difference = low_pass(resample(time, used.v, clock), rate, motion_band) - v
         v = v + difference - low_pass(difference, rate, blend)
     a = derivative(clock, v)
-    tau = resample(time, recording.tau[rows], clock + shift)
-    return Stretch(clock, q, v, a, tau, index, rows.start, rows.stop - 1)
+    tau = resample(time, used.torque, clock + shift)
+    return Stretch(clock, q, v, a, tau, index, rows.start, rows.stop - 1, _drive_signals(used, clock))
+
+
+def _drive_signals(recording: Recording, clock: np.ndarray) -> dict[str, np.ndarray]:
+    """Each drive signal at the last sample before each time of the clock, shape (n, dof)."""
+    last = np.maximum(np.searchsorted(recording.time, clock, side="right") - 1, 0)
+    return {name: getattr(recording, name)[last] for name in recording.signals if name in DRIVE_SIGNALS}
 
 
 def _noise(recordings: Sequence[Recording], rate: float) -> dict[str, np.ndarray]:
@@ -127,15 +143,15 @@ def _noise(recordings: Sequence[Recording], rate: float) -> dict[str, np.ndarray
     weights: list[int] = []
     for recording in recordings:
         for rows in stretches_of(recording):
-            if rows.stop - rows.start < SHORTEST:
+            used = recording.used(rows)
+            if len(used) < SHORTEST:
                 continue
-            weights.append(rows.stop - rows.start)
-            time = recording.time[rows]
-            clock = even_clock(time, rate)
+            weights.append(len(used))
+            clock = even_clock(used.time, rate)
             for name in powers:
-                signal = getattr(recording, name)
+                signal = getattr(used, name)
                 if signal is not None:
-                    powers[name].append(white_noise(resample(time, signal[rows], clock)) ** 2)
+                    powers[name].append(white_noise(resample(used.time, signal, clock)) ** 2)
     return {n: np.sqrt(np.average(p, axis=0, weights=weights)) for n, p in powers.items() if len(p) == len(weights) > 0}
 
 
@@ -159,12 +175,13 @@ def _velocity_agrees(recording: Recording, rate: float, motion_band: float) -> b
         return False
     off, power = np.zeros(recording.n_dof), np.zeros(recording.n_dof)
     for rows in stretches_of(recording):
-        if rows.stop - rows.start < 4 * SHORTEST:
+        used = recording.used(rows)
+        if len(used) < 4 * SHORTEST or used.v is None:
             continue
-        time = recording.time[rows]
+        time = used.time
         clock = even_clock(time, rate)
-        v = derivative(clock, low_pass(resample(time, recording.q[rows], clock), rate, motion_band))
-        recorded = low_pass(resample(time, recording.v[rows], clock), rate, motion_band)
+        v = derivative(clock, low_pass(resample(time, used.q, clock), rate, motion_band))
+        recorded = low_pass(resample(time, used.v, clock), rate, motion_band)
         inside = slice(SHORTEST, -SHORTEST)
         off += np.sum(low_pass(recorded - v, rate, 0.25 * motion_band)[inside] ** 2, axis=0)
         power += np.sum(v[inside] ** 2, axis=0)

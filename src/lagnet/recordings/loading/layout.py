@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lagnet.errors import RecordingError, closest
-from lagnet.recordings.column_map import JOINT_KINDS, ColumnMap
+from lagnet.recordings.loading.column_map import ColumnMap
+from lagnet.recordings.loading.joint_match import JointMatch, match_joints
+from lagnet.recordings.signals import DRIVE_SIGNALS, DRIVING, JOINT_SIGNALS, UNITS
 
-NUMBERED = re.compile(r"(q|v|a|tau|current)_(\d+)")
-UNITS = {"q": "rad", "v": "rad/s", "a": "rad/s²", "tau": "N m", "current": "A"}
+NUMBERED = re.compile(rf"({'|'.join(JOINT_SIGNALS)})_(\d+)")
 MAX_JOINTS = 64
+NOT_THERE = ""  # what a mapping gives for a signal that is not to be read
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Layout:
     Args:
         joints: joint names in model order.
         time: name of the time column.
-        signals: kind (q, v, a, tau, current) to the columns of its joints in model order; absent kinds are left out.
+        signals: kind (q, v, tau, command, …) to the columns of its joints in model order; absent kinds are left out.
         trajectory: name of the label column, or None.
         warnings: what was noticed and survived.
     """
@@ -48,12 +50,16 @@ class Header:
         joints: joint names that the file states for its numbered columns, or None.
         column_map: the user's mapping.
         where: the file.
+        log: whether it is a log of a whole robot, which may hold joints that the model does not have.
+        match: where the robot's joints stand among those that the file states, or None.
     """
 
     names: tuple[str, ...]
     joints: tuple[str, ...] | None
     column_map: ColumnMap
     where: str
+    log: bool = False
+    match: JointMatch | None = None
 
     def error(self, what: str, next_step: str | None = None) -> RecordingError:
         """An error of this file."""
@@ -76,19 +82,22 @@ def find_layout(header: Header, joints: Sequence[str] | None, n_dof: int | None)
             "has no header line", "add one (time,q_0,…,tau_0,…) or map column_0, column_1, … in a --columns file"
         )
     names = tuple(joints) if joints is not None else _joints_of_file(header, n_dof)
+    if joints is not None and header.joints is not None:
+        match = match_joints(header.joints, names)
+        header = replace(header, match=match if header.log or not match.unused else None)
     if joints is not None or n_dof is not None:
         _refuse_other_joint_count(header, names)
     time = _time(header)
-    signals = {kind: found for kind in JOINT_KINDS if (found := _signal(header, kind, names))}
+    signals = {kind: found for kind in JOINT_SIGNALS if (found := _signal(header, kind, names))}
     if "q" not in signals:
         raise _missing(header, "q", names, names)
-    warnings = []
+    warnings = [*_told_of_match(header, names), *_told_of_unused(header)]
     if "tau" in signals and "current" in signals:
-        del signals["current"]
-        warnings.append("holds torque and current: the current is not used")
-    if "tau" not in signals and "current" not in signals:
+        warnings.append("holds torque and current: the torque is used")
+    if not signals.keys() & set(DRIVING):
         raise header.error(
-            f"has neither torque ({_example('tau', names)}) nor motor current ({_example('current', names)})",
+            f"has neither torque ({_example('tau', names)}) nor motor current ({_example('current', names)})"
+            f" nor commanded positions ({_example('command', names)})",
             "name these columns so, or map the file's own names in a --columns file" + _seen(header),
         )
     trajectory = header.column_map.columns.get("trajectory", "trajectory")
@@ -143,6 +152,10 @@ def _refuse_other_joint_count(header: Header, joints: tuple[str, ...]) -> None:
         return
     if all(f"q_{joint}" in header.names for joint in joints):
         return
+    if header.match is not None and header.match.complete:
+        return
+    if header.match is not None and header.joints is not None:
+        _refuse_match(header, header.match, joints)
     numbers = [int(match[2]) for name in header.names if (match := NUMBERED.fullmatch(name))]
     count = max(numbers, default=-1) + 1
     if count and count != len(joints):
@@ -168,7 +181,7 @@ def _time(header: Header) -> str:
 def _signal(header: Header, kind: str, joints: tuple[str, ...]) -> tuple[str, ...]:
     """The columns of one kind in model order; () where the file has none of them."""
     found = [_column(header, kind, i, joint, joints) for i, joint in enumerate(joints)]
-    if not any(found):
+    if not any(found) or (kind in DRIVE_SIGNALS and kind not in DRIVING and not all(found)):
         return ()
     if None in found:
         raise _missing(
@@ -180,6 +193,8 @@ def _signal(header: Header, kind: str, joints: tuple[str, ...]) -> tuple[str, ..
 def _column(header: Header, kind: str, index: int, joint: str, joints: tuple[str, ...]) -> str | None:
     mapped = header.column_map.file_name(kind, index, joint)
     if mapped is not None:
+        if mapped == NOT_THERE:
+            return None
         if mapped not in header.names:
             raise _unmapped(header, f"{kind}_{index}", mapped)
         return mapped
@@ -196,9 +211,35 @@ def _column(header: Header, kind: str, index: int, joint: str, joints: tuple[str
 
 def _file_index(header: Header, index: int, joint: str, joints: tuple[str, ...]) -> int:
     """Position of a joint in the file, where the file states the order of its own joints."""
-    if header.joints is not None and set(header.joints) == set(joints):
-        return header.joints.index(joint)
-    return index
+    found = None if header.match is None else header.match.index[index]
+    return index if found is None else found
+
+
+def _refuse_match(header: Header, match: JointMatch, joints: tuple[str, ...]) -> None:
+    """Stop where the file names its joints and they are not those of the robot."""
+    if match.ambiguous:
+        raise header.error(
+            f"the joints of the robot fit {len(match.ambiguous)} sets of joints: {', '.join(match.ambiguous[:4])}",
+            "say which by a --columns file, which `lagnet data inspect` writes",
+        )
+    named = ", ".join((header.joints or ())[:8])
+    if match.how == "name":
+        lacking = [joint for joint, found in zip(joints, match.index, strict=True) if found is None]
+        raise header.error(f"has no joint {', '.join(lacking[:6])}: it names {named}", _can_be_held(lacking[0]))
+
+
+def _told_of_match(header: Header, joints: tuple[str, ...]) -> list[str]:
+    match = header.match
+    if match is None or match.how in ("", "name") or header.joints is None:
+        return []
+    pairs = ", ".join(f"{header.joints[i]} = {j}" for i, j in zip(match.index, joints, strict=True) if i is not None)
+    return [f"joints were matched by {match.how}: {pairs}"]
+
+
+def _told_of_unused(header: Header) -> list[str]:
+    unused = () if header.match is None else header.match.unused
+    listed = ", ".join(unused[:6]) + (", …" if len(unused) > 6 else "")
+    return [f"the robot has no joint {listed}: not read; it should stand still"] if unused else []
 
 
 def _refuse_doubled(header: Header, layout: Layout) -> None:
