@@ -13,7 +13,7 @@ from lagnet.effects.catalogue import CATALOGUE, effect_named
 from lagnet.effects.effect import Effect
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError
-from lagnet.models.corrected import NamedEffect, torque_with
+from lagnet.models.corrected.model import NamedEffect, torque_with
 
 EXACT = 1e-9  # relative: rounding of one law computed in two ways
 NOTHING = 1e-6  # of the torque: what an effect without size may add (an elastic joint is never infinitely stiff)
@@ -303,7 +303,7 @@ def test_an_unknown_name_is_refused_with_the_nearest_one() -> None:
 
 
 def test_a_corrected_model_refuses_missing_parameters(ur5) -> None:
-    from lagnet.models.corrected import CorrectedModel
+    from lagnet.models.corrected.model import CorrectedModel
 
     with pytest.raises(EffectError, match="q0"):
         CorrectedModel(ur5, (NamedEffect("joint_spring", 1, {"k": 3.0}),), np.ones(6))

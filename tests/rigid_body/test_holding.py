@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagnet.errors import ModelError, RobotError
-from lagnet.models.loading import load_any
+from lagnet.models.files.loading import load_any
 from lagnet.rigid_body.named_robots import named_robot_path
 from lagnet.rigid_body.robot import Robot, load_description
 

@@ -53,6 +53,7 @@ _EFFECTS: tuple[Effect, ...] = (
 )
 
 CATALOGUE: dict[str, Effect] = {effect.name: effect for effect in _EFFECTS}
+"""Every effect by its name, in the order of the table in the README."""
 
 
 def effect_named(name: str) -> Effect:

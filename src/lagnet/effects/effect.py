@@ -62,10 +62,16 @@ class Effect(ABC):
     stage: ClassVar[Stage] = "torque"
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
     passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
-    hears_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
+    uses_measured_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
     plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it
     by_convention: ClassVar[Mapping[str, float]] = {}  # half-widths that a parameter's meaning leaves open, SI units
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
+    is_friction: ClassVar[bool] = False  # True: it dissipates energy at a joint
+    is_dry_friction: ClassVar[bool] = False  # True: friction that changes its sign with the velocity
+    function_of_speed: ClassVar[bool] = False  # True: its torque is a curve over the joint's velocity alone
+    is_body: ClassVar[bool] = False  # True: its coordinates are inertial parameters of a body
+    changes_link: ClassVar[bool] = False  # True: that body is a modelled link, not one that is added
+    is_delay: ClassVar[bool] = False  # True: the torque signal comes late
 
     @abstractmethod
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
@@ -110,10 +116,14 @@ class Effect(ABC):
 
     def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
         """Whether some 95 % interval leaves out the value at which the effect would not be there."""
-        absent = ((self.parameters[0].name, 0.0),) if self.absent is None else self.absent
-        if not absent:
+        if not self.absence:
             return True
-        return any(not intervals[name][0] <= value <= intervals[name][1] for name, value in absent)
+        return any(not intervals[name][0] <= value <= intervals[name][1] for name, value in self.absence)
+
+    @property
+    def absence(self) -> tuple[tuple[str, float], ...]:
+        """Values at which the effect adds no torque; empty where it always adds some."""
+        return ((self.parameters[0].name, 0.0),) if self.absent is None else self.absent
 
     def feasible(self, values: Mapping[str, float]) -> bool:
         """Whether the parameters obey physics (bounds; pseudo-inertias positive definite where there are any)."""

@@ -30,10 +30,23 @@ def held_direction(time: np.ndarray, v: np.ndarray, slow: float, direction: np.n
         direction: shape (n,), s(v).
         share: 0 for friction without memory, 1 where all of it stays.
     """
-    still = np.abs(v) < slow
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(np.int8), [0]])))
     out = direction.copy()
-    for start, stop in edges.reshape(-1, 2):
-        if start > 0 and time[stop - 1] - time[start] >= SHORTEST:
+    for start, stop in _rests(time, v, slow):
+        if start > 0:
             out[start:stop] = share * np.sign(v[start - 1])
     return out
+
+
+def resting(time: np.ndarray, v: np.ndarray, slow: float) -> np.ndarray:
+    """Where a joint rests: stays slow for longer than a passage through zero, shape (n,), bool."""
+    out = np.zeros(v.shape, dtype=bool)
+    for start, stop in _rests(time, v, slow):
+        out[start:stop] = True
+    return out
+
+
+def _rests(time: np.ndarray, v: np.ndarray, slow: float) -> list[tuple[int, int]]:
+    """First sample of each rest and that after its last."""
+    still = np.abs(v) < slow
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(np.int8), [0]])))
+    return [(a, b) for a, b in edges.reshape(-1, 2).tolist() if time[b - 1] - time[a] >= SHORTEST]

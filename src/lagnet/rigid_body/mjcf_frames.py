@@ -92,7 +92,7 @@ def stated_inertia(inertial: Element, owner: Element, reading: Reading) -> pin.I
     else:
         tensor = np.diag(numbers(inertial, "diaginertia", 3, reading.where, owner))
     place = placement(inertial, owner, reading)
-    return pin.Inertia(mass, place.translation, place.rotation @ tensor @ place.rotation.T)
+    return _body(mass, place, tensor, owner, reading)
 
 
 def shape_inertia(shape: Element, owner: Element, reading: Reading) -> pin.Inertia:
@@ -107,7 +107,22 @@ def shape_inertia(shape: Element, owner: Element, reading: Reading) -> pin.Inert
     mass = density * volume
     if shape.get("mass") is not None:
         (mass,) = numbers(shape, "mass", 1, reading.where, owner)
-    return pin.Inertia(mass, place.translation, place.rotation @ np.diag(mass * moments) @ place.rotation.T)
+    return _body(mass, place, np.diag(mass * moments), owner, reading)
+
+
+def _body(mass: float, place: pin.SE3, tensor: np.ndarray, owner: Element, reading: Reading) -> pin.Inertia:
+    """A body of that mass and inertia tensor about its centre, in the frame of its owner.
+
+    Raises:
+        RobotError: no body has such a mass or tensor.
+    """
+    try:
+        return pin.Inertia(mass, place.translation, place.rotation @ tensor @ place.rotation.T)
+    except (RuntimeError, ValueError):
+        what = f"body {str(owner.get('name'))[:60]} has a mass of {mass:.4g} kg or moments of inertia that no body has"
+        raise RobotError(
+            what, where=reading.where, next_step="mass and principal moments must not be negative"
+        ) from None
 
 
 def _placed_shape(shape: Element, kind: str, owner: Element, reading: Reading) -> tuple[pin.SE3, np.ndarray]:

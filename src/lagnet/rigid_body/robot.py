@@ -12,6 +12,7 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body import batches
+from lagnet.rigid_body.body_tree import TreeBody, tree_of
 from lagnet.rigid_body.description import NONE_HELD, Description
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.mjcf import read_mjcf
@@ -201,6 +202,19 @@ class Robot:
         if gravity.shape != (3,):
             raise ValueError(f"gravity has shape {gravity.shape}, expected (3,)")
         return Robot(replace(self._description, model=_with_gravity(self._model, gravity)))
+
+    def with_armature(self, armature: np.ndarray) -> Robot:
+        """The same arm with other rotors; armature of shape (dof,), inertia felt at each joint [kg m²]."""
+        armature = np.asarray(armature, dtype=float)
+        if armature.shape != (self.n_dof,):
+            raise ValueError(f"armature has shape {armature.shape}, expected ({self.n_dof},)")
+        model = self._model.copy()
+        model.armature = armature
+        return Robot(replace(self._description, model=model))
+
+    def body_tree(self) -> tuple[TreeBody, ...]:
+        """The moving bodies with their joints as plain numbers, from the base outwards."""
+        return tree_of(self._description, self)
 
     def with_payload(self, mass: float, com: np.ndarray, inertia: np.ndarray, joint: int = -1) -> Robot:
         """The same arm with a body fixed to the last link.

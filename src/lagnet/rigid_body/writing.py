@@ -7,8 +7,6 @@ without an inertial a mass of one kilogram.
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree
@@ -18,6 +16,7 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
+from lagnet.files import write_whole
 from lagnet.rigid_body.description import Description
 from lagnet.rigid_body.urdf import hold_joints
 
@@ -69,15 +68,7 @@ def _serialise(root: Element) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Writes the file whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, suffix=".part", delete=False) as file:
-        file.write(text)
-    try:
-        os.chmod(file.name, 0o644)
-        os.replace(file.name, path)
-    except OSError:
-        os.unlink(file.name)
-        raise
+    write_whole(path, text)
 
 
 def _edited_urdf(description: Description) -> Element:

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 from lagnet.errors import RobotError
+from lagnet.files import read_bounded
 
 MAX_BYTES = 20_000_000  # the largest humanoid of example-robot-data takes 0.3 MB
 MAX_DEPTH = 400  # MJCF nests a body in a body; no robot has a chain this long
@@ -39,7 +40,7 @@ def read_xml(path: Path) -> XmlFile:
             raise RobotError("is a folder, not a URDF or MJCF file", where=str(path))
         if path.stat().st_size > MAX_BYTES:
             raise RobotError(f"larger than {MAX_BYTES // 1_000_000} MB: no robot description", where=str(path))
-        text = path.read_bytes()
+        text = read_bounded(path, MAX_BYTES)
     except OSError as error:
         raise RobotError(f"cannot be read ({error.strerror})", where=str(path)) from error
     return checked_xml(text, str(path))

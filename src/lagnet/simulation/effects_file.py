@@ -6,10 +6,12 @@ import tomllib
 from pathlib import Path
 
 from lagnet.errors import EffectError
+from lagnet.files import read_bounded
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulation.injection import InjectedEffect, inject
 
 LARGEST = 1_000_000  # bytes; a list of effects is a few lines
+FAR_TOO_LARGE = 1e9  # in SI units
 MOST = 200  # effects; a few for every joint
 EXAMPLE = '[[effect]] with name = "viscous_friction", joint = "elbow_joint", Fv = 2.0'
 
@@ -35,7 +37,7 @@ def _tables(path: Path) -> list[dict]:
         size = path.stat().st_size
         if size > LARGEST:
             raise EffectError(f"{size} bytes are too many for a list of effects", where=str(path))
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(read_bounded(path, LARGEST).decode("utf-8"))
     except OSError as error:
         raise EffectError(error.strerror or "cannot be read", where=str(path)) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -62,4 +64,6 @@ def _one(table: dict, robot: Robot, where: str) -> InjectedEffect:
     for key, value in values.items():
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise EffectError(f"{key} is {value!r}, not a number", where=where)
+        if not abs(value) < FAR_TOO_LARGE:
+            raise EffectError(f"{key} is {value:.3g}, which no arm has", where=where)
     return inject(robot, name, joint, {key: float(value) for key, value in values.items()}, where)

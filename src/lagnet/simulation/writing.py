@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lagnet.errors import LagnetError
+from lagnet.files import finite_json, write_whole
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 
@@ -47,6 +46,4 @@ def write_simulation(folder: Path, truth: dict, recordings: Iterable[Recording])
 
 
 def _write_json(path: Path, content: dict) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    part.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, finite_json(content))

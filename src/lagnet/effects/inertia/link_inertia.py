@@ -36,6 +36,8 @@ class LinkInertia(LinearEffect):
     shown_by = "all joints moving at once, with strong accelerations and in many poses"
     confused_with = ("payload", "rotor_inertia", "gravity_tilt", "torque_gain")
     absent = tuple((n, 0.0) for n in NAMES)
+    is_body = True
+    changes_link = True
     source = "gautier1990"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

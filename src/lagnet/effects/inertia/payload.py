@@ -34,6 +34,7 @@ class Payload(Effect):
     plain_terms = 3
     shown_by = "the wrist held in several orientations, and accelerated"
     confused_with = ("torque_gain", "gravity_tilt", "link_inertia")
+    is_body = True
     source = "atkeson1986"
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:

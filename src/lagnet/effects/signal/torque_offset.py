@@ -20,6 +20,7 @@ class TorqueOffset(LinearEffect):
     stage = "signal"
     shown_by = "motion in both directions, in many poses"
     confused_with = ("asymmetric_friction", "gravity_tilt", "joint_spring")
+    function_of_speed = True
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

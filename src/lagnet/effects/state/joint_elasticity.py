@@ -22,7 +22,7 @@ class JointElasticity(Effect):
     formula = "τ(q − τ/K) − τ(q)"
     parameters = (Parameter("K", "K", "N m/rad", "stiffness of the transmission", lower=1e-3),)
     reaches_all = True
-    hears_torque = True
+    uses_measured_torque = True
     instantaneous = False
     stage = "body"
     shown_by = "quick changes of load and acceleration at the joint"

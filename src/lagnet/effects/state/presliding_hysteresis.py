@@ -29,6 +29,8 @@ class PreslidingHysteresis(StateEffect):
     confused_with = ("backlash", "stribeck_friction", "coulomb_friction")
     contains = ("coulomb_friction",)
     absent = (("Fc", 0.0),)
+    is_friction = True
+    is_dry_friction = True
     source = "canudas1995"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

@@ -24,6 +24,9 @@ class AsymmetricFriction(LinearEffect):
     confused_with = ("coulomb_friction", "torque_offset")
     contains = ("coulomb_friction",)
     absent = (("Fc_plus", 0.0), ("Fc_minus", 0.0))
+    is_friction = True
+    is_dry_friction = True
+    function_of_speed = True
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

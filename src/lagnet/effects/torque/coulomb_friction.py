@@ -19,6 +19,9 @@ class CoulombFriction(LinearEffect):
     parameters = (Parameter("Fc", "F_c", "N m", "torque against the motion, equal both ways", lower=0.0),)
     shown_by = "motion in both directions"
     confused_with = ("asymmetric_friction", "stribeck_friction", "load_dependent_friction")
+    is_friction = True
+    is_dry_friction = True
+    function_of_speed = True
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

@@ -20,6 +20,8 @@ class LoadDependentFriction(LinearEffect):
     plain_terms = 3
     shown_by = "motion in both directions under loads that vary, for instance at several inclinations of the link"
     confused_with = ("coulomb_friction",)
+    is_friction = True
+    is_dry_friction = True
     source = "bittencourt2012"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

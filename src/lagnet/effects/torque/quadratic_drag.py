@@ -20,6 +20,8 @@ class QuadraticDrag(LinearEffect):
     plain_terms = 1
     shown_by = "high speed as well as low"
     confused_with = ("viscous_friction",)
+    is_friction = True
+    function_of_speed = True
     source = "armstrong1994"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

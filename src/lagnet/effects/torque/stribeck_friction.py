@@ -28,6 +28,9 @@ class StribeckFriction(Effect):
     confused_with = ("coulomb_friction", "backlash", "presliding_hysteresis")
     contains = ("coulomb_friction",)
     absent = (("Fc", 0.0), ("Fs", 0.0))
+    is_friction = True
+    is_dry_friction = True
+    function_of_speed = True
     source = "armstrong1994"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

@@ -19,6 +19,8 @@ class ViscousFriction(LinearEffect):
     parameters = (Parameter("Fv", "F_v", "N m s/rad", "torque per joint speed", lower=0.0),)
     shown_by = "a range of speeds, slow and fast"
     confused_with = ("time_delay", "quadratic_drag")
+    is_friction = True
+    function_of_speed = True
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:
