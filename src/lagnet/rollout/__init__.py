@@ -1,0 +1,1 @@
+"""Forward motion of servo-driven joints with exact stick and slip, compiled and batched over windows."""

@@ -1,0 +1,160 @@
+"""Rollouts of one servo-driven joint while the others move as they were measured: one equation, exact stick and slip.
+
+Each step solves (M + h D + h² k/4) v' = M v + h (τ − k h v/4 − h F sign(v')) for the speed v' and the friction together
+(Moreau's time stepping): |impulse| ≤ h F and v' = 0, or impulse = h F against v'. A joint that sticks has v' = 0 to the
+last bit, so that it never creeps. Springs are taken at mid-step (no numerical damping), and so are dampers where the
+step resolves them, else towards its end (stable at any step). Sources: Karnopp 1985; Stewart & Trinkle 1996; Moreau
+1988.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numba import njit
+
+from lagnet.servos.command_delay import integral_at
+from lagnet.servos.controller import controller_torque, outside_dead_band
+from lagnet.servos.friction import dry_friction
+from lagnet.servos.parameters import (
+    BACK_EMF,
+    BIAS,
+    DEAD_BAND,
+    DELAY,
+    KI,
+    LOAD_GAIN,
+    OFFSET,
+    QUADRATIC,
+    ROTOR,
+    VISCOUS,
+    VOLTAGE_SHARE,
+)
+
+FARTHEST = 1e6  # [rad] a rollout that has left this range has diverged and stays there
+
+
+@dataclass(frozen=True, eq=False)
+class JointSeries:
+    """What drives one joint, sample by sample, all of shape (n,); several recordings one after the other.
+
+    Args:
+        time: [s], increasing within a recording.
+        command, integral: commanded position [rad] and its integral over time within the recording.
+        q: measured position [rad].
+        mass: M_ii of the nominal model without its rotor [kg m²].
+        load: torque of gravity and of the other joints' motion in the nominal model, at the measured pose [N m].
+        load_slope: derivative of that load by the joint's own position [N m/rad].
+        ratio: voltage over nominal voltage; gain: the controller's gains over those of the law;
+            enabled: whether the drive gives torque.
+    """
+
+    time: np.ndarray
+    command: np.ndarray
+    integral: np.ndarray
+    q: np.ndarray
+    mass: np.ndarray
+    load: np.ndarray
+    load_slope: np.ndarray
+    ratio: np.ndarray
+    gain: np.ndarray
+    enabled: np.ndarray
+
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """The fields in their order."""
+        return tuple(getattr(self, name) for name in self.__dataclass_fields__)
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Stretches that are rolled out from their first sample.
+
+    Args:
+        first, last: shape (w,), first and last sample of each.
+        floor: shape (w,), first sample of its recording, before which the first command was held.
+        speed: shape (w,), speed at the first sample [rad/s].
+    """
+
+    first: np.ndarray
+    last: np.ndarray
+    floor: np.ndarray
+    speed: np.ndarray
+
+
+def roll_out(parameters: np.ndarray, series: JointSeries, windows: Windows, step: float = 0.004) -> np.ndarray:
+    """Positions predicted in every window, shape (sets, n); samples outside of windows keep the measured position.
+
+    Args:
+        parameters: shape (sets, len(LAW)).
+        step: longest step of integration [s].
+    """
+    parameters = np.atleast_2d(np.ascontiguousarray(parameters, dtype=float))
+    out = np.tile(series.q, (len(parameters), 1))
+    where = (windows.first, windows.last, windows.floor, windows.speed)
+    _roll_sets(parameters, series.arrays(), where, step, out)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def _roll_sets(parameters, series, windows, step, out):  # pragma: no cover - compiled
+    for s in range(parameters.shape[0]):
+        for w in range(windows[0].size):
+            _roll_window(
+                parameters[s], series, windows[0][w], windows[1][w], windows[2][w], windows[3][w], step, out[s]
+            )
+
+
+@njit(cache=True, error_model="numpy")
+def _roll_window(p, series, first, last, floor, speed, step, out):  # pragma: no cover - compiled
+    time, command, integral, measured, mass, load, slope, ratio, gain, enabled = series
+    q, v, total, k = out[first], speed, 0.0, first
+    for n in range(first, last):
+        span = time[n + 1] - time[n]
+        pieces = max(1, ceil(span / step - 1e-9))
+        h = span / pieces
+        r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n] - 1.0)
+        before, k = integral_at(time[n] - p[DELAY], floor, last, k, time, command, integral)
+        for i in range(pieces):
+            x = (i + 0.5) / pieces
+            after, k = integral_at(time[n] + (i + 1) * h - p[DELAY], floor, last, k, time, command, integral)
+            u = (after - before) / h
+            before = after
+            away = q - (measured[n] + x * (measured[n + 1] - measured[n]))
+            felt = load[n] + x * (load[n + 1] - load[n]) + (slope[n] + x * (slope[n + 1] - slope[n])) * away
+            felt *= p[LOAD_GAIN]
+            m = p[LOAD_GAIN] * (mass[n] + x * (mass[n + 1] - mass[n])) + p[ROTOR]
+            error = u - q - p[BIAS]
+            torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
+            if enabled[n] > 0.5:
+                total += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
+                torque, stiff, damp = controller_torque(p, error, total, v, r, gain[n])
+                brake = p[BACK_EMF]
+            else:
+                total = 0.0
+            new = next_speed(p, v, m, torque + p[OFFSET], stiff, damp, brake, felt, h)
+            q += 0.5 * h * (v + new)
+            v = new
+            if not abs(q) < FARTHEST:
+                q, v = FARTHEST, 0.0
+        out[n + 1] = q
+
+
+@njit(cache=True, error_model="numpy")
+def explicit_share(damping, m, h):  # pragma: no cover - compiled
+    """Share of a damper that is taken at the start of the step: half (second order) where the step resolves it."""
+    return 0.5 if h * damping <= 2.0 * m else m / (h * damping)
+
+
+@njit(cache=True, error_model="numpy")
+def next_speed(p, v, m, torque, stiff, damp, brake, load, h):  # pragma: no cover - compiled
+    """Speed at the end of a step of h, with the dry friction that goes with it."""
+    damping = damp + brake + p[VISCOUS] + p[QUADRATIC] * abs(v)
+    early = explicit_share(damping, m, h)
+    drive = torque + (damp - early * damping) * v - 0.25 * h * stiff * v - load
+    free = m * v + h * drive
+    side = 1.0 if free > 0.0 else -1.0
+    dry = h * dry_friction(p, v, load, side)
+    if abs(free) <= dry:
+        return 0.0
+    return (free - side * dry) / (m + h * (1.0 - early) * damping + 0.25 * h * h * stiff)

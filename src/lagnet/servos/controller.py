@@ -1,0 +1,34 @@
+"""Torque of a position controller: clip(r γ (kp e + I) − r kd v, ±r τ_max), e behind a dead band.
+
+r is the share of the nominal voltage, γ the gains of a recording over those of the law.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from lagnet.servos.parameters import DEAD_BAND, KD, KP, LIMIT
+
+
+@njit(cache=True, error_model="numpy")
+def outside_dead_band(error, width):  # pragma: no cover - compiled
+    """The part of the error beyond ± width [rad]."""
+    if error > width:
+        return error - width
+    if error < -width:
+        return error + width
+    return 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def controller_torque(p, error, integral, v, ratio, gain):  # pragma: no cover - compiled
+    """Torque at a command error and speed, and the slopes −∂τ/∂q, −∂τ/∂v, zero in saturation or dead band."""
+    beyond = outside_dead_band(error, p[DEAD_BAND])
+    torque = ratio * (gain * (p[KP] * beyond + integral) - p[KD] * v)
+    limit = ratio * p[LIMIT]
+    if torque > limit:
+        return limit, 0.0, 0.0
+    if torque < -limit:
+        return -limit, 0.0, 0.0
+    stiffness = ratio * gain * p[KP] if beyond != 0.0 or p[DEAD_BAND] == 0.0 else 0.0
+    return torque, stiffness, ratio * p[KD]

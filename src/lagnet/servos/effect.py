@@ -1,0 +1,76 @@
+"""The kinds of left-out physics that motion alone can show, and what each must say about itself.
+
+These effects are parameters of a forward model and not columns of a torque regression: without a measured torque there
+is no residual torque to regress. So they have a catalogue and a conformance test of their own, beside that of
+`lagnet.effects`; where a name stands in both, it is the same physics with the same parameters.
+"""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from lagnet.effects.effect import Parameter
+from lagnet.servos.parameters import INDEX
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Typical sizes of one joint's motion, from which searches start.
+
+    Args:
+        torque: kp times the command error, root mean square [N m].
+        speed: root mean square of the speed while it moves [rad/s].
+        error: root mean square of the command error [rad].
+        inertia: M_ii of the nominal model with its rotor [kg m²].
+        sample: median time between samples [s].
+        kp: gain of the law that is being extended [N m/rad].
+    """
+
+    torque: float
+    speed: float
+    error: float
+    inertia: float
+    sample: float
+    kp: float
+
+
+class ServoEffect(ABC):
+    """One physical cause of an error of motion, as parameters of `lagnet.servos.parameters.LAW` that it sets free."""
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    formula: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    frees: ClassVar[tuple[tuple[str, ...], ...]]  # law parameters behind each of `parameters`; several share its value
+    with_it: ClassVar[tuple[str, ...]] = ()  # law parameters that are fitted again with it
+    contains: ClassVar[tuple[str, ...]] = ()  # special cases of it: never named beside it
+    shown_by: ClassVar[str]
+    confused_with: ClassVar[tuple[str, ...]] = ()
+    source: ClassVar[str]
+
+    def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
+        """Values to start a fit from, one for each of `parameters`."""
+        raise NotImplementedError
+
+    def apply(self, law: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
+        """A law with the effect's values in place, shape (len(LAW),)."""
+        changed = law.copy()
+        for parameter, names in zip(self.parameters, self.frees, strict=True):
+            for name in names:
+                changed[INDEX[name]] = values[parameter.name]
+        return changed
+
+    def read(self, law: np.ndarray) -> dict[str, float]:
+        """The effect's values in a law."""
+        return {p.name: float(law[INDEX[n[0]]]) for p, n in zip(self.parameters, self.frees, strict=True)}
+
+    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
+        """None if a joint's recorded motion can show the effect, else why it cannot; arrays of shape (n,)."""
+        if not moving.any():
+            return "the joint does not move"
+        return None

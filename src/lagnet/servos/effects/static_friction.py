@@ -1,0 +1,38 @@
+"""Break-away: a joint at rest starts only beyond Fc + Fs, in motion Fc is felt."""
+
+from __future__ import annotations
+
+from typing import ClassVar, final
+
+import numpy as np
+
+from lagnet.effects.effect import Parameter
+from lagnet.servos.effect import Scales, ServoEffect
+
+
+@final
+class StaticFriction(ServoEffect):
+    """Break-away: a joint at rest starts only beyond Fc + Fs, in motion Fc is felt."""
+
+    name = "static_friction"
+    title = "Static friction"
+    formula = "Fs at rest, beyond Coulomb friction"
+    parameters: ClassVar = (
+        Parameter("Fs", "Fs", "N m", "break-away torque beyond the friction of motion", 0.0, np.inf),
+    )
+    frees: ClassVar = (("static",),)
+    with_it: ClassVar = ("coulomb",)
+    shown_by = "starts slowly from rest, again and again"
+    confused_with: ClassVar = ("dead_band", "stribeck_friction", "coulomb_friction")
+    source = "armstrong1994"
+
+    def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
+        return ((0.1 * scales.torque,),)
+
+    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
+        if not moving.any():
+            return "the joint does not move"
+        step = np.diff(q)[moving[1:]]
+        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
+            return "the joint moves in one direction alone"
+        return None

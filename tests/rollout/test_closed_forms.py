@@ -1,0 +1,74 @@
+"""Rollouts of one joint against motions that have a closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.rollout.one_joint import JointSeries, Windows, roll_out
+from lagnet.servos.command_delay import command_integral
+from lagnet.servos.parameters import law_vector
+
+TIME = np.arange(0.0, 5.0, 0.02)
+FINE = 0.001  # [s]
+SECOND_ORDER = 1e-4  # [rad] (ω h)² of a step of 1 ms at 5 rad/s, over a few periods
+AT_STOPS = 1e-3  # [rad] the step in which an oscillator stops is not resolved
+
+
+def series(command: np.ndarray, q0: float = 0.0, load: float = 0.0) -> JointSeries:
+    ones, zeros = np.ones_like(TIME), np.zeros_like(TIME)
+    rows = (TIME, command, command_integral(TIME, command), ones * q0, ones, ones * load, zeros, ones, ones, ones)
+    return JointSeries(*rows)
+
+
+def rolled(command: np.ndarray, q0: float = 0.0, load: float = 0.0, **law: float) -> np.ndarray:
+    windows = Windows(np.array([0]), np.array([len(TIME) - 1]), np.array([0]), np.zeros(1))
+    return roll_out(law_vector(**law), series(command, q0, load), windows, FINE)[0]
+
+
+def test_a_spring_swings_as_a_cosine():
+    assert np.abs(rolled(np.zeros_like(TIME), 1.0, kp=25.0) - np.cos(5.0 * TIME)).max() < SECOND_ORDER
+
+
+def test_a_damped_spring_decays_by_its_closed_form():
+    rate = np.sqrt(25.0 - 1.0)
+    exact = np.exp(-TIME) * (np.cos(rate * TIME) + np.sin(rate * TIME) / rate)
+    assert np.abs(rolled(np.zeros_like(TIME), 1.0, kp=25.0, viscous=2.0) - exact).max() < SECOND_ORDER
+
+
+def test_dry_friction_takes_the_same_from_every_swing_and_then_holds():
+    friction, half = 2.0 / 25.0, np.pi / 5.0
+    swing = np.minimum((TIME // half).astype(int), 6)  # 1 - 12 · 0.08 = 0.04 < 0.08: the sixth swing ends at rest
+    centre, span = friction * (-1.0) ** swing, 1.0 - 2.0 * friction * swing - friction
+    exact = (-1.0) ** swing * span * np.cos(5.0 * (TIME - swing * half)) + centre
+    exact[swing == 6] = 1.0 - 12.0 * friction
+    q = rolled(np.zeros_like(TIME), 1.0, kp=25.0, coulomb=2.0)
+    assert np.abs(q - exact).max() < AT_STOPS
+    assert np.ptp(q[-50:]) == 0.0  # it rests to the last bit
+
+
+def test_a_joint_below_break_away_never_creeps():
+    q = rolled(np.full_like(TIME, 0.05), kp=10.0, coulomb=0.2, static=0.4)
+    assert np.ptp(q) == 0.0
+    assert rolled(np.full_like(TIME, 0.07), kp=10.0, coulomb=0.2, static=0.4)[-1] > 0.0
+
+
+def test_a_self_locking_gear_holds_its_load_when_the_drive_is_off():
+    assert np.ptp(rolled(np.zeros_like(TIME), load=1.0, kp=1e-6, load_driven=1.1)) == 0.0
+    assert rolled(np.zeros_like(TIME), load=1.0, kp=1e-6, load_driven=0.9)[-1] < -0.1
+
+
+def test_a_delay_of_parts_of_a_sample_shifts_the_motion_by_as_much():
+    command = np.sin(2.0 * TIME)
+    law = {"kp": 400.0, "viscous": 40.0}
+    late = rolled(command, **law, delay=0.03)
+    prompt = np.interp(TIME - 0.03, TIME, rolled(command, **law))
+    assert np.abs(late - prompt)[10:].max() < 2e-3  # a held command moves in steps of 0.04 rad
+
+
+def test_a_load_is_held_with_the_sag_that_the_gain_gives():
+    assert abs(rolled(np.zeros_like(TIME), load=1.0, kp=20.0, viscous=9.0)[-1] + 0.05) < SECOND_ORDER
+
+
+def test_a_torque_limit_bounds_the_acceleration():
+    q = rolled(np.full_like(TIME, 100.0), kp=50.0, torque_limit=2.0)
+    assert np.abs(q - TIME**2).max() < SECOND_ORDER
