@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.arm_search import Found, search_arm
-from lagnet.diagnosis.fitting import Workbench, make_workbench
-from lagnet.diagnosis.grams import collect_grams
-from lagnet.diagnosis.library import Library, build_library
-from lagnet.diagnosis.noise_floor import noise_floor
-from lagnet.diagnosis.problem import Problem, pose_problem
-from lagnet.recordings.conditioning import Conditioned, condition
+from lagnet.diagnosis.problem.noise_floor import noise_floor
+from lagnet.diagnosis.problem.problem import Problem, pose_problem
+from lagnet.diagnosis.regression.block_gram import collect_block_grams
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, fit_selection, sum_normal_equations
+from lagnet.diagnosis.regression.library import Library, build_library
+from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.selection.arm_search import FIRST_INEFFICIENCY, Scales, Selection, refit_selection, search_arm
+from lagnet.recordings.conditioning.condition import Conditioned, condition
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,19 +25,52 @@ class Posed:
 
     Args:
         problem, fit: of the recordings.
-        library, bench: hypotheses and normal equations.
+        library, equations: hypotheses and normal equations.
         noise: shape (dof,), [N m].
     """
 
     problem: Problem
     fit: Conditioned
     library: Library
-    bench: Workbench
+    equations: NormalEquations
     noise: np.ndarray
 
-    def search(self) -> Found:
+    def search(self) -> Selection:
         """The selection of the search."""
-        return search_arm(self.bench, self.bench.samples * self.noise**2, self.bench.samples * self.problem.scale**2)
+        return self._searched
+
+    @cached_property
+    def _searched(self) -> Selection:
+        samples = self.equations.samples
+        return search_arm(self.equations, samples * self.noise**2, samples * self.problem.scale**2)
+
+    @cached_property
+    def holdout_equations(self) -> NormalEquations:
+        """Normal equations of the held-out recording."""
+        return sum_normal_equations(self.library, collect_block_grams(self.problem, self.library, self.problem.holdout))
+
+    def index(self, effect: str, joint: int | None) -> int:
+        """Number in the library of the first hypothesis of an effect at a joint."""
+        return next(i for i, h in enumerate(self.library.hypotheses) if h.place == (effect, joint))
+
+    def select(self, local: Mapping[int, Sequence[str]], arm_wide: Sequence[str] = ()) -> Selection:
+        """A selection of exactly these effects, whether the search would choose them or not; nothing is searched.
+
+        Args:
+            local: by joint, names of effects that stay there.
+            arm_wide: names of effects of the whole arm.
+        """
+        own = tuple(tuple(self.index(n, j) for n in local.get(j, ())) for j in range(self.problem.n_dof))
+        far = tuple(self.index(n, None) for n in arm_wide)
+        samples, n = self.equations.samples, self.problem.n_dof
+        scales = Scales(np.full(n, FIRST_INEFFICIENCY), samples * self.noise**2, samples * self.problem.scale**2)
+        plain = fit_selection(self.equations, (), self.problem.scale)
+        first = refit_selection(self.equations, Selection(far, own, -np.inf, plain, scales))
+        return refit_selection(self.equations, first)  # joints weighted by what is left of each
+
+    def candidate(self, selection: Selection) -> Candidate:
+        """A selection as the rules see it."""
+        return Candidate(self.problem, self.equations, self.holdout_equations, selection, self.noise, 0)
 
 
 def pose(arm: Any, recording: Any, unseen: Any) -> Posed:
@@ -42,5 +78,5 @@ def pose(arm: Any, recording: Any, unseen: Any) -> Posed:
     fit = condition([recording])
     problem = pose_problem(arm, fit, condition([unseen], fit.bandwidth))
     library = build_library(problem)
-    bench = make_workbench(library, collect_grams(problem, library, problem.fit))
-    return Posed(problem, fit, library, bench, noise_floor(problem, fit, 0))
+    equations = sum_normal_equations(library, collect_block_grams(problem, library, problem.fit))
+    return Posed(problem, fit, library, equations, noise_floor(problem, fit, 0))

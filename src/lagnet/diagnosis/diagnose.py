@@ -8,25 +8,28 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.compose import compose_verdict
-from lagnet.diagnosis.conventions import refuse_other_conventions
-from lagnet.diagnosis.curves import collect_evidence
-from lagnet.diagnosis.evidence import Evidence
-from lagnet.diagnosis.form_error import with_form_error
-from lagnet.diagnosis.inquiry import Inquiry, inquire
-from lagnet.diagnosis.leftover import missed_by
-from lagnet.diagnosis.narrower import best_band
-from lagnet.diagnosis.next_recording import Standing
-from lagnet.diagnosis.noise_floor import noise_floor
-from lagnet.diagnosis.one_clock import on_one_clock
-from lagnet.diagnosis.open_axes import settle_open_axes
-from lagnet.diagnosis.passing import settle_passing
-from lagnet.diagnosis.problem import pose_problem
-from lagnet.diagnosis.sharpness import sharpen
-from lagnet.diagnosis.verdict import EffectFound, Verdict
+from lagnet.diagnosis.data_quality.inspect import screened_for
+from lagnet.diagnosis.holdout_torque import HoldoutTorque
+from lagnet.diagnosis.layers import correct
+from lagnet.diagnosis.nominal.axis_offsets import settle_axis_offsets
+from lagnet.diagnosis.nominal.conventions import refuse_other_conventions
+from lagnet.diagnosis.pipeline import Inputs, run_pipeline, with_misspecification
+from lagnet.diagnosis.problem.dry_friction import fit_sign_model
+from lagnet.diagnosis.problem.noise_floor import noise_floor
+from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.diagnosis.reruns import best_band, on_one_clock, settle_transients
+from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.diagnosis.rules.rule import RejectionRule
+from lagnet.diagnosis.settings import DecisionLimits
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.diagnosis.verdict.collect_report_data import collect_report_data
+from lagnet.diagnosis.verdict.compose import compose_verdict
+from lagnet.diagnosis.verdict.layers import with_layers
+from lagnet.diagnosis.verdict.report_data import ReportData
+from lagnet.diagnosis.verdict.verdict import EffectFound, Verdict, with_data_quality
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected import CorrectedModel
-from lagnet.recordings.conditioning import Conditioned, condition
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.recordings.conditioning.condition import Conditioned, condition
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
 from lagnet.types import InverseDynamics
@@ -38,22 +41,24 @@ class Diagnosis:
 
     Args:
         verdict: the conclusions.
-        corrected: the nominal model with the named physics.
+        corrected: the nominal model with all layers of the correction.
         evidence: the curves behind the verdict, for reports.
         fit_recordings, holdout_recordings: what was used for what.
         conditioned_holdout: the held-out recordings on their even clock.
         ends_of: for each held-out recording the index of the fitted one that it is the end of, None for another.
-        standing: what the next recording is planned from.
+        state: all that its steps found out.
+        holdout_torques: torque of each layer at every held-out sample.
     """
 
     verdict: Verdict
     corrected: CorrectedModel
-    evidence: Evidence
+    evidence: ReportData
     fit_recordings: tuple[Recording, ...]
     holdout_recordings: tuple[Recording, ...]
     conditioned_holdout: Conditioned
     ends_of: tuple[int | None, ...]
-    standing: Standing
+    state: DiagnosisState
+    holdout_torques: tuple[HoldoutTorque, ...]
 
     @property
     def effects(self) -> tuple[EffectFound, ...]:
@@ -72,6 +77,8 @@ def diagnose(
     *,
     bandwidth: float | None = None,
     nominal_error: np.ndarray | None = None,
+    rules: Sequence[RejectionRule] = RULES,
+    limits: DecisionLimits | None = None,
     seed: int = 0,
 ) -> Diagnosis:
     """Says whether and where recordings differ from a model, names the physics left out, and corrects the model.
@@ -84,40 +91,45 @@ def diagnose(
             explains much more.
         nominal_error: shape (dof,), torque that the nominal model is known to miss, such as a learned one [N m]; it
             counts into the noise floor. None: what an earlier diagnosis left, if the model comes from one.
+        rules: that every named effect must pass; an ablation is `RULES` less one.
+        limits: shared by several steps; None: the defaults.
         seed: of everything random.
 
     Raises:
         DiagnosisError: no recording, joints that are not the model's, or recordings in another convention (signs,
             units, zeros of joints) than the model.
+        RecordingError: data that would be told as physics: dead or stuck channels, another clock or order of joints.
     """
-    fit_on, held = _divide(recordings, robot, holdout)
+    _check(recordings, robot, holdout)
+    data = screened_for((*recordings, *(holdout or ())), robot)
+    read, apart = data.recordings[: len(recordings)], data.recordings[len(recordings) :]
+    fit_on, held = (read, apart) if holdout else holdout_split(read)
     ends_of = (None,) * len(held) if holdout else tuple(range(len(held)))
     known = nominal_error if nominal_error is not None else getattr(robot, "left", None)
-    robot = settle_open_axes(robot, fit_on, held, known, seed)
+    robot = settle_axis_offsets(robot, fit_on, held, known, seed)
 
-    def at(band: float | None, shift: float = 0.0) -> Inquiry:
+    def at(band: float | None, shift: float = 0.0) -> DiagnosisState:
         fit = condition(fit_on, band, shift)
         unseen = condition(held, fit.bandwidth, shift)
-        posed = pose_problem(robot, fit, unseen, ends_of)
+        posed = pose_problem(robot, fit, unseen, ends_of, limits)
         refuse_other_conventions(posed)
-        problem = replace(sharpen(posed), missed=known)
+        problem = replace(fit_sign_model(posed), missed=known)
         noise = noise_floor(problem, fit, seed)
         noise = noise if known is None else np.hypot(noise, known)
-        inquiry = inquire(problem, fit, unseen, noise, seed)
-        return settle_passing(inquiry, lambda part: inquire(part, fit, unseen, noise, seed))
+        given = Inputs(fit, unseen, noise, rules, seed)
+        return settle_transients(run_pipeline(problem, given), lambda part: run_pipeline(part, given))
 
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
-    inquiry = with_form_error(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
-    seen = inquiry.problem
-    told = (seen.slow, seen.held, seen.straight)
-    corrected = CorrectedModel(robot, inquiry.effects, *told, left=missed_by(inquiry))
-    verdict, evidence = compose_verdict(inquiry, fit_on, held), collect_evidence(inquiry, fit_on, held)
-    return Diagnosis(verdict, corrected, evidence, fit_on, held, inquiry.holdout, ends_of, inquiry.standing)
+    state = with_misspecification(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
+    verdict, evidence = compose_verdict(state, fit_on, held), collect_report_data(state, fit_on, held)
+    correction = correct(state, held, ends_of)
+    verdict = with_layers(verdict, correction.errors, correction.identified, correction.model)
+    verdict = with_data_quality(verdict, data.findings)
+    conditioned = state.holdout
+    return Diagnosis(verdict, correction.model, evidence, fit_on, held, conditioned, ends_of, state, correction.torques)
 
 
-def _divide(
-    recordings: Sequence[Recording], robot: InverseDynamics, holdout: Sequence[Recording] | None
-) -> tuple[tuple[Recording, ...], tuple[Recording, ...]]:
+def _check(recordings: Sequence[Recording], robot: InverseDynamics, holdout: Sequence[Recording] | None) -> None:
     if not recordings:
         raise DiagnosisError(
             "no recording was given", next_step="give at least one recording of joint motion and torque"
@@ -129,6 +141,3 @@ def _divide(
                 where=recording.path or None,
                 choices=robot.joints,
             )
-    if holdout:
-        return tuple(recordings), tuple(holdout)
-    return holdout_split(recordings)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.models.corrected import torque_along
-from lagnet.recordings.conditioning import Conditioned
+from lagnet.models.corrected.model import torque_along
+from lagnet.recordings.conditioning.condition import Conditioned
+from lagnet.recordings.conditioning.smoothing import resample
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.smoothing import resample
 from lagnet.types import InverseDynamics
 
 

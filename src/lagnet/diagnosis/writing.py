@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import io
 from pathlib import Path
 
 import numpy as np
@@ -10,41 +10,47 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from lagnet.diagnosis.diagnose import Diagnosis
-from lagnet.diagnosis.prediction import torque_at_samples
-from lagnet.models.corrected_files import save_corrected
+from lagnet.files import write_folder_whole, write_whole
+from lagnet.models.corrected.folder import save_corrected
+from lagnet.recordings.recording import Recording
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> Path:
-    """Writes verdict.json, holdout_torque.parquet and corrected/ into a folder.
+    """Writes verdict.json, holdout_torque.parquet and corrected/ into a folder, each whole or not at all.
 
     Returns:
         The folder.
     """
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
-    pq.write_table(holdout_table(diagnosis), out / "holdout_torque.parquet")
-    save_corrected(diagnosis.corrected, out / "corrected")
-    (out / "verdict.json").write_text(diagnosis.to_json(), encoding="utf-8")
+    verdict, table = diagnosis.to_json(), io.BytesIO()
+    pq.write_table(holdout_table(diagnosis), table)
+    write_folder_whole(out / "corrected", lambda folder: save_corrected(diagnosis.corrected, folder))
+    write_whole(out / "holdout_torque.parquet", table.getvalue())
+    write_whole(out / "verdict.json", verdict)
     return out
 
 
 def holdout_table(diagnosis: Diagnosis) -> pa.Table:
-    """Measured, nominal and corrected torque at every held-out sample as given."""
+    """Measured torque and that of the nominal model and of each layer, at every held-out sample as given."""
     columns: dict[str, list[np.ndarray]] = {}
     names: list[str] = []
-    for index, recording in enumerate(diagnosis.holdout_recordings):
-        corrected = replace(diagnosis.corrected, recording=diagnosis.ends_of[index])
-        parts = {
-            "measured": recording.tau,
-            "nominal": torque_at_samples(diagnosis.corrected.nominal, recording, diagnosis.conditioned_holdout, index),
-            "corrected": torque_at_samples(corrected, recording, diagnosis.conditioned_holdout, index),
-        }
+    for index, torque in enumerate(diagnosis.holdout_torques):
+        recording = torque.recording
         columns.setdefault("time", []).append(recording.time)
         for joint in range(recording.n_dof):
-            for kind, torque in parts.items():
-                columns.setdefault(f"tau_{kind}_{joint}", []).append(torque[:, joint])
+            for kind, values in ({"measured": recording.torque} | torque.layers).items():
+                columns.setdefault(f"tau_{kind}_{joint}", []).append(values[:, joint])
+        columns.setdefault("set_aside", []).append(_set_aside(recording))
         names.extend([recording.path or f"recording {index + 1}"] * len(recording))
     table = {name: np.concatenate(parts) for name, parts in columns.items()}
+    if not table["set_aside"].any():
+        del table["set_aside"]
     if len(diagnosis.holdout_recordings) > 1:
         return pa.table(table | {"recording": names})
     return pa.table(table)
+
+
+def _set_aside(recording: Recording) -> np.ndarray:
+    """Samples that bad data made unusable, shape (n,)."""
+    return np.zeros(len(recording), dtype=bool) if recording.valid is None else ~recording.valid

@@ -1,0 +1,48 @@
+"""The log of another robot than the one that was named."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
+from lagnet.diagnosis.data_quality.misfit import misfit_of
+from lagnet.errors import RobotError
+from lagnet.rigid_body.named_robots import named_robots
+from lagnet.rigid_body.robot import Robot, load_description
+
+RARE = 1.5  # by which the misfit of another robot counts more: a wrong column is more usual
+
+
+class AnotherRobot(ReadingCheck):
+    """Recordings that fit one of the robots that come by name, and not the one that was given."""
+
+    name = "another_robot"
+    title = "the recordings are of another robot"
+    last = True
+
+    def readings(self, evidence: Evidence) -> Iterator[Reading]:
+        found = sorted(
+            (misfit_of(robot, evidence.few), name, robot)
+            for name, robot in same_size(evidence.model.n_dof)
+            if getattr(evidence.model, "sha256", "") != robot.sha256
+        )
+        for _, name, robot in found[:2]:
+            yield Reading(
+                self.name,
+                "",
+                misfit_of(robot, evidence.many),
+                f"the recordings fit the robot {name}, and not {getattr(evidence.model, 'source', '') or 'the model'}",
+                f"give --robot {name}, or the file that describes the arm that was recorded",
+                RARE,
+            )
+
+
+def same_size(n_dof: int) -> Iterator[tuple[str, Robot]]:
+    """The named robots of as many joints."""
+    for name in named_robots():
+        try:
+            robot = load_description(name)
+        except RobotError:
+            continue
+        if robot.n_dof == n_dof:
+            yield name, robot

@@ -1,0 +1,81 @@
+"""All checks of data over all recordings of a diagnosis, before physics: mended, refused or told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lagnet.diagnosis.data_quality.check import BETTER, Evidence, Reading
+from lagnet.diagnosis.data_quality.checks import CHECKS
+from lagnet.diagnosis.data_quality.physics import left_by_physics
+from lagnet.diagnosis.data_quality.samples import look_at
+from lagnet.recordings.quality.finding import CERTAIN, Finding
+from lagnet.recordings.quality.screen import Screened, refuse_harmful, screen
+from lagnet.recordings.recording import Recording
+
+SUSPECT = 0.5  # misfit of some joint from which other readings are tried
+SOUND = 0.005  # misfit of the whole arm below which nothing is
+
+
+@dataclass(frozen=True, eq=False)
+class Inspected:
+    """Recordings less what is set aside, and what was found."""
+
+    recordings: tuple[Recording, ...]
+    findings: tuple[Finding, ...]
+
+
+def inspect_quality(recordings: Sequence[Recording], robot: Any = None) -> tuple[Finding, ...]:
+    """What is wrong with the data of recordings, without refusing any.
+
+    Args:
+        recordings: as read.
+        robot: a torque model with `joints` and `inverse_dynamics`; None: only what needs no model is looked for.
+    """
+    screened = [screen(recording, robot) for recording in recordings]
+    found = [finding for one in screened for finding in one.findings]
+    if robot is None or any(f.refused for f in found):
+        return tuple(found)
+    return (*found, *_readings([one.recording for one in screened], robot))
+
+
+def screened_for(recordings: Sequence[Recording], robot: Any) -> Inspected:
+    """The recordings less the samples that are set aside, and what was found.
+
+    Raises:
+        RecordingError: data that a diagnosis would tell as physics; which, where, and what mends it.
+    """
+    screened: list[Screened] = [screen(recording, robot) for recording in recordings]
+    found = [finding for one in screened for finding in one.findings]
+    refuse_harmful(found)
+    kept = tuple(one.recording for one in screened)
+    read = _readings(kept, robot)
+    refuse_harmful(read)
+    return Inspected(kept, (*found, *read))
+
+
+def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...]:
+    """The reading under which the recordings fit the model, if they do not as they are and there is one."""
+    series = look_at(recordings)
+    if not series:
+        return ()
+    with np.errstate(all="ignore"):
+        evidence = Evidence(robot, series)
+        suspect = not evidence.misfits.max() < SUSPECT and evidence.as_recorded > SOUND
+        tried: list[Reading] = []
+        for check in CHECKS:
+            if check.always or (suspect and not (check.last and any(map(evidence.accepts, tried)))):
+                tried.extend(check().readings(evidence))
+        best = min(tried, key=lambda reading: reading.misfit * reading.prior, default=None)
+        if best is None or not evidence.accepts(best) or not best.misfit < BETTER * left_by_physics(evidence):
+            return ()
+    return (_finding(best, tried),)
+
+
+def _finding(best: Reading, tried: Sequence[Reading]) -> Finding:
+    others = [r for r in tried if r.check != best.check and r.misfit * r.prior < best.misfit * best.prior / BETTER]
+    also = f"; or {' or '.join(r.detail for r in others[:1])}" if others else ""
+    return Finding(best.check, "", best.channel, None, CERTAIN, best.detail + also, best.mend, harmful=True)

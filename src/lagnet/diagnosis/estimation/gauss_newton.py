@@ -1,0 +1,150 @@
+"""x ← x − (Σ JᵀJ)⁺ Σ Jᵀe, bounded: Gauss–Newton on the weighted residuals e(x), and their sandwich covariance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
+from lagnet.diagnosis.regression.block_gram import BLOCK
+from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse_where_told, normal, power_of_all
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.model import NamedEffect, torque_with
+
+STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
+DONE = 1e-6  # relative change of the error at which the steps end
+MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on segments spread over them
+DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
+NOT_SAID = 1e6  # standard deviation reported of a coordinate that recordings do not determine, in its unit
+
+
+@dataclass(frozen=True, eq=False)
+class Slots:
+    """Where each effect's coordinates stand in the vector of all."""
+
+    effects: tuple[NamedEffect, ...]
+    starts: np.ndarray
+
+    def of(self, n: int) -> slice:
+        return slice(int(self.starts[n]), int(self.starts[n + 1]))
+
+    def named(self, x: np.ndarray) -> tuple[NamedEffect, ...]:
+        return tuple(e.at_coordinates(x[self.of(n)]) for n, e in enumerate(self.effects))
+
+    def of_bodies(self) -> np.ndarray:
+        """Whether a coordinate is a body's, shape (k,)."""
+        return np.repeat([effect_named(e.effect).is_body for e in self.effects], np.diff(self.starts))
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        pairs = [e.coordinate_bounds() for e in self.effects]
+        return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
+
+
+def spread(pieces: Sequence[Segment], most: int = MOST_SAMPLES) -> tuple[Segment, ...]:
+    """The segments that a refit uses."""
+    return spread_evenly(pieces, most)
+
+
+def blocks_of(problem: Problem, pieces: Sequence[Segment]) -> list[list[np.ndarray]]:
+    """Rows of each block of time of each segment, long compared with the correlation time of the residual."""
+    rate = problem.rate / max(1, int(np.median(np.diff(pieces[0].keep))))
+    length = max(8, int(BLOCK * rate / problem.bandwidth))
+    counts = [max(1, round(p.keep.size / length)) for p in pieces]
+    return [np.array_split(np.arange(p.keep.size), n) for p, n in zip(pieces, counts, strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class GaussNewton:
+    """A refit's data: segments of the problem, the noise σ of each joint and the place of each coordinate."""
+
+    problem: Problem
+    pieces: tuple[Segment, ...]
+    sigma: np.ndarray
+    slots: Slots
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "motions", tuple(p.motion(self.problem) for p in self.pieces))
+
+    def residuals(self, x: np.ndarray) -> list[np.ndarray]:
+        """e = F(τ − τ_nominal − Σ τ_effect(x)) / σ of each segment, shape (len(keep), dof)."""
+        effects = self.slots.named(x)
+        out = []
+        for piece, motion in zip(self.pieces, self.motions, strict=True):  # pyright: ignore
+            rest = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
+            out.append(rest * piece.counts / self.sigma)
+        return out
+
+    def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
+        """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
+        base = self.residuals(x)
+        columns: list[list[np.ndarray]] = []
+        _, upper = self.slots.bounds()
+        for i in np.flatnonzero(free):
+            step = DIFFERENCE * max(abs(x[i]), 1e-2)
+            if x[i] + step > upper[i]:
+                step = -step
+            moved = x.copy()
+            moved[i] += step
+            columns.append([(m - b) / step for m, b in zip(self.residuals(moved), base, strict=True)])
+        return [np.stack([c[n] for c in columns], axis=2) for n in range(len(base))]
+
+    def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Bounded Gauss–Newton with step halving; parameters that are not free stay."""
+        if not free.any():
+            return x
+        lower, upper = (b[free] for b in self.slots.bounds())
+        rest = self.residuals(x)
+        error = power_of_all(rest)
+        for _ in range(STEPS):
+            gram, moment = normal(self.jacobian(x, free), rest)
+            step = bounded_step(gram, -moment, lower - x[free], upper - x[free])
+            for shrink in (1.0, 0.5, 0.25, 0.1, 0.03):
+                trial = x.copy()
+                trial[free] = np.clip(x[free] + shrink * step, lower, upper)
+                moved = self.residuals(trial)
+                if power_of_all(moved) < error:
+                    break
+            else:
+                return x
+            gain, x, rest, error = error - power_of_all(moved), trial, moved, power_of_all(moved)
+            if gain < DONE * error:
+                break
+        return x
+
+    def covariance(self, x: np.ndarray) -> tuple[np.ndarray, int]:
+        """A⁻¹ (Σ_b J_bᵀe_b e_bᵀJ_b) A⁻¹, A = Σ_b J_bᵀJ_b, and the number of blocks b.
+
+        Residuals that are correlated in time within a block widen the intervals.
+        """
+        rest, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
+        gram, _ = normal(jacobian, rest)
+        bread, open_ = inverse_where_told(gram)
+        scores = []
+        for r, j, blocks in zip(rest, jacobian, blocks_of(self.problem, self.pieces), strict=True):
+            scores.extend(np.einsum("njk,nj->k", j[rows], r[rows]) for rows in blocks)
+        table = np.array(scores)
+        freedom = max(2, len(table) - 1)
+        inflation = len(table) / max(1.0, len(table) - np.sqrt(x.size) - 1)
+        robust = bread @ (table.T @ table) @ bread * inflation
+        count = sum(p.counts.sum() for p in self.pieces)
+        plain = bread * power_of_all(rest) / max(1.0, count - x.size)
+        variance = np.diag(robust)
+        known = variance > 1e-200  # where the data say anything of a coordinate
+        open_ |= ~known & self.slots.of_bodies()
+        widest = np.ones(x.size)
+        widest[known] = np.maximum(np.sqrt(np.diag(plain)[known] / variance[known]), 1.0)
+        robust *= widest[:, None] * widest[None, :]
+        robust[open_, :] = robust[:, open_] = 0.0
+        robust[open_, open_] = NOT_SAID**2
+        return robust, freedom
+
+
+def start_gauss_newton(
+    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray
+) -> tuple[GaussNewton, np.ndarray]:
+    """The work of a refit, and the coordinates of the effects as given."""
+    parts = [e.coordinates() for e in effects]
+    slots = Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
+    return GaussNewton(problem, spread(problem.fit), sigma, slots), np.concatenate(parts)

@@ -1,0 +1,129 @@
+"""log10 odds = (log P(S) − log P(S with a rival)) / ln 10 of every named effect, and ties where they are too small."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.regression.cross_validation import NormalEquations
+from lagnet.diagnosis.selection.arm_search import Selection, total_score, views_of
+from lagnet.diagnosis.selection.joint_search import JointView, compatible, gains_over
+
+SHOWN = 6  # rivals that the evidence lists
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One selected hypothesis and its rivals.
+
+    Args:
+        index: the hypothesis.
+        rivals: effect names with the log10 odds of the selected one over each, closest first.
+        tied: names that the data do not distinguish from it.
+    """
+
+    index: int
+    rivals: tuple[tuple[str, float], ...]
+    tied: tuple[str, ...]
+
+    @property
+    def best_rival(self) -> tuple[str | None, float | None]:
+        """The closest rival and the log10 odds over it; None where there is none."""
+        return self.rivals[0] if self.rivals else (None, None)
+
+
+def compare_with_rivals(equations: NormalEquations, found: Selection) -> tuple[Comparison, ...]:
+    """Compares each selected hypothesis with every replacement in its place."""
+    views = views_of(equations, found)
+    comparisons = [_arm_wide_comparison(equations, found, i) for i in found.arm_wide]
+    for joint, own in enumerate(found.local):
+        comparisons.extend(_local_comparison(views[joint], own, i) for i in own)
+    return tuple(comparisons)
+
+
+def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comparison:
+    here, error = view.score(own), view.loss(own)[0]
+    odds: dict[str, float] = {}
+    tied: set[str] = set()
+    for names, other in replacements(view, own, index):
+        score = view.score(other)
+        if not np.isfinite(score):
+            continue
+        gap = float((here - score) / np.log(10.0))
+        same = view.loss(other)[0] - error < max(view.limits.same_error * error, view.least_gain)
+        for name in names:
+            if gap < odds.get(name, np.inf):
+                odds[name] = gap
+            if gap < view.limits.tie_odds or same:
+                tied.add(name)
+    tied.update(_preferred_yet_refused(view, own, index))
+    return Comparison(index, _ranked(odds), tuple(sorted(tied)))
+
+
+def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
+    """The wider law that the evidence prefers and that gains enough, if any.
+
+    The search refused it at the least shape that was tried: a Stribeck speed this close to the zone that noise blurs
+    could be the blur itself. Then both stay open.
+    """
+    hypotheses = view.equations.library.hypotheses
+    rest = tuple(k for k in own if k != index)
+    wider = [
+        k for k in view.equations.library.local[view.joint] if hypotheses[index].effect in hypotheses[k].law.contains
+    ]
+    scores = {k: view.score((*rest, k)) for k in wider if compatible(view, rest, k)}
+    best = max(scores, key=lambda k: scores[k], default=None)
+    if best is None or (scores[best] - view.score(own)) / np.log(10.0) < view.limits.tie_odds:
+        return set()
+    return {hypotheses[best].effect} if gains_over(view, (*rest, best), best, own) else set()
+
+
+def replacements(
+    view: JointView, own: tuple[int, ...], index: int
+) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
+    """Selections with another hypothesis in its place, alone, for it and a neighbour, or two in its place."""
+    hypotheses = view.equations.library.hypotheses
+    place = hypotheses[index].place
+    rest = tuple(k for k in own if k != index)
+    fresh = [k for k in view.equations.library.local[view.joint] if k not in own and hypotheses[k].place != place]
+    own_name = hypotheses[index].effect
+    for k in fresh:
+        wider = own_name in hypotheses[k].law.contains  # fits at least as well by itself: no rival on its own
+        if not wider and compatible(view, rest, k):
+            yield (hypotheses[k].effect,), (*rest, k)
+        for gone in rest:  # one law for two
+            left = tuple(i for i in rest if i != gone)
+            both = {own_name, hypotheses[gone].effect} <= {*hypotheses[k].law.confused_with}
+            if both and compatible(view, left, k):
+                yield (hypotheses[k].effect,), (*left, k)
+    near = [
+        k
+        for k in fresh
+        if hypotheses[k].effect in hypotheses[index].law.confused_with and own_name not in hypotheses[k].law.contains
+    ]
+    for n, k in enumerate(near):  # two laws for one
+        for m in near[n + 1 :]:
+            if compatible(view, rest, k) and compatible(view, (*rest, k), m):
+                yield (hypotheses[k].effect, hypotheses[m].effect), (*rest, k, m)
+
+
+def _arm_wide_comparison(equations: NormalEquations, found: Selection, index: int) -> Comparison:
+    hypotheses = equations.library.hypotheses
+    rest = tuple(i for i in found.arm_wide if i != index)
+    odds: dict[str, float] = {}
+    for k in equations.library.reaching:
+        if k in found.arm_wide or hypotheses[k].place == hypotheses[index].place:
+            continue
+        score = total_score(equations, (*rest, k), found)
+        if np.isfinite(score):
+            name = hypotheses[k].effect
+            odds[name] = min(odds.get(name, np.inf), float((found.score - score) / np.log(10.0)))
+    same = hypotheses[index].effect
+    tied = tuple(sorted(n for n, o in odds.items() if o < equations.limits.tie_odds and n != same))
+    return Comparison(index, _ranked({n: o for n, o in odds.items() if n != same}), tied)
+
+
+def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:
+    return tuple(sorted(odds.items(), key=lambda item: item[1])[:SHOWN])

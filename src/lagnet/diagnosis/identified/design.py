@@ -1,0 +1,158 @@
+"""The linear system of the identified layer: filtered columns of all joints over one vector of unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from lagnet.diagnosis.identified.dictionary import USUAL, TermGroup
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.models.corrected.motion_terms import MotionTerm, Rest
+from lagnet.types import Trajectory
+
+BODY = 10  # inertial parameters of a link
+RESTING = 0.01  # of a joint's usual largest speed
+SILENT = 1e-9  # of the largest column: what is smaller is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Unknowns that share one prior width: their places in the vector of unknowns; `free` have none.
+
+    `joint` is the one whose own they are, `pair` those that they tie; both are None for the bodies.
+    """
+
+    name: str
+    unknowns: np.ndarray
+    free: bool
+    joint: int | None = None
+    pair: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class JointRows:
+    """The equations of one joint, low-passed and decimated: columns · unknowns = target.
+
+    Args:
+        columns: shape (n, p), scaled to unit size.
+        target: shape (n,), torque that the named model lacks [N m].
+        valid: shape (n,), False where the joint rests and dry friction may take any value.
+        unknowns: shape (p,), which of the unknowns the columns belong to.
+    """
+
+    columns: np.ndarray
+    target: np.ndarray
+    valid: np.ndarray
+    unknowns: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """All joints' equations.
+
+    Args:
+        joints: one entry a joint.
+        groups: unknowns by their prior; bodies first.
+        terms: functions of motion in the order of their unknowns, after the bodies'.
+        n_bodies: number of unknowns that are inertial parameters.
+        scale: shape (n_unknowns,), by which columns were divided; 0 for a column without content.
+        piece: shape (n,), index of the piece of motion of each row.
+    """
+
+    joints: tuple[JointRows, ...]
+    groups: tuple[Group, ...]
+    terms: tuple[MotionTerm, ...]
+    n_bodies: int
+    scale: np.ndarray
+    piece: np.ndarray
+
+    @property
+    def n_unknowns(self) -> int:
+        """Length of the vector of unknowns."""
+        return self.scale.size
+
+    def without(self, unknowns: np.ndarray) -> Design:
+        """The same equations with some unknowns at zero."""
+        scale = self.scale.copy()
+        scale[unknowns] = 0.0
+        return replace(self, joints=tuple(_scaled(j, np.where(scale > 0, 1.0, 0.0)) for j in self.joints), scale=scale)
+
+    def unscaled(self, x: np.ndarray) -> np.ndarray:
+        """Unknowns in SI units from those of scaled columns; zero where a column has no content."""
+        return np.where(self.scale > 0, x / np.where(self.scale > 0, self.scale, 1.0), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A piece of fitted motion: its regressor (None without bodies), torque of the bodies and what is to explain."""
+
+    piece: Segment
+    regressor: np.ndarray | None
+    load: Trajectory
+    target: Trajectory
+
+
+def make_design(problem: Problem, seen: Sequence[Seen], groups: Sequence[TermGroup]) -> Design:
+    """Columns of the bodies and of the groups' functions at every joint.
+
+    Args:
+        problem: gives filter and motion.
+        seen: the pieces that are fitted.
+        groups: functions of motion.
+    """
+    terms = tuple(t for g in groups for t in g.terms)
+    n_bodies = BODY * problem.n_dof if seen[0].regressor is not None else 0
+    rows = [_joint_rows(problem, seen, j, terms, n_bodies) for j in range(problem.n_dof)]
+    scale = _scales(problem, rows, n_bodies + len(terms))
+    joints = tuple(_scaled(r, scale) for r in rows)
+    piece = np.concatenate([np.full(s.piece.keep.size, i) for i, s in enumerate(seen)])
+    return Design(joints, _groups(groups, n_bodies), terms, n_bodies, scale, piece)
+
+
+def usual_rest(problem: Problem) -> Rest:
+    """Joints rest below a hundredth of their usual largest speed, and bristles stay bent unless recordings deny it."""
+    speed = np.quantile(np.abs(np.concatenate([p.v for p in problem.fit])), USUAL, axis=0)
+    return Rest(np.minimum(problem.slow, RESTING * speed), np.ones(problem.n_dof))
+
+
+def _groups(groups: Sequence[TermGroup], n_bodies: int) -> tuple[Group, ...]:
+    out = [Group("bodies", np.arange(n_bodies), False)] if n_bodies else []
+    start = n_bodies
+    for group in groups:
+        out.append(Group(group.name, np.arange(start, start + len(group.terms)), group.free, group.joint, group.pair))
+        start += len(group.terms)
+    return tuple(out)
+
+
+def _joint_rows(
+    problem: Problem, seen: Sequence[Seen], joint: int, terms: Sequence[MotionTerm], n_bodies: int
+) -> JointRows:
+    own, rest = [i for i, t in enumerate(terms) if joint in t.rows], usual_rest(problem)
+    links = np.arange(BODY * joint, n_bodies)  # links before the joint do not load it
+    columns = []
+    for s in seen:
+        motion: Any = s.piece.motion(problem)
+        parts = [] if s.regressor is None else [s.regressor[:, joint, links]]
+        parts += [terms[i].at(joint, motion, s.load, rest)[:, None] for i in own]
+        columns.append(problem.reduce(s.piece, np.hstack(parts)))
+    target = np.concatenate([problem.reduce(s.piece, s.target[:, [joint]])[:, 0] for s in seen])
+    valid = np.concatenate([s.piece.counts[:, joint] for s in seen])
+    return JointRows(np.vstack(columns), target, valid, np.concatenate([links, n_bodies + np.array(own)]).astype(int))
+
+
+def _scales(problem: Problem, rows: Sequence[JointRows], n: int) -> np.ndarray:
+    """Largest root mean square of each column over the joints, in parts of the joint's torque, shape (n,)."""
+    scale = np.zeros(n)
+    for joint, r in enumerate(rows):
+        size = np.sqrt(np.mean(r.columns[r.valid] ** 2, axis=0)) if r.valid.any() else np.zeros(r.unknowns.size)
+        scale[r.unknowns] = np.maximum(scale[r.unknowns], size / max(float(problem.scale[joint]), 1e-12))
+    return np.where(scale > SILENT * scale.max(initial=0.0), scale, 0.0)
+
+
+def _scaled(rows: JointRows, scale: np.ndarray) -> JointRows:
+    own = scale[rows.unknowns]
+    columns = np.where(own > 0, rows.columns / np.where(own > 0, own, 1.0), 0.0)
+    return JointRows(columns, rows.target, rows.valid, rows.unknowns)

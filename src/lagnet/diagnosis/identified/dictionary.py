@@ -1,0 +1,63 @@
+"""Which functions of motion the identified layer weighs at each joint, and their natural scales on given recordings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.models.corrected.motion_terms import BENDS, MotionTerm
+
+CORE = ("viscous", "dry", "offset", "rotor")  # plain least squares has them: never drawn to zero
+BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
+USUAL = 0.98  # quantile of |v| taken for the usual largest speed
+
+
+@dataclass(frozen=True)
+class TermGroup:
+    """Functions of motion whose weights share one prior width.
+
+    Args:
+        name: for reading.
+        terms: the functions.
+        free: drawn to zero by nothing but rounding.
+        needs_load: of the torque of the bodies, which must be known first.
+        pair: the joints that it ties; it is asked for only where unseen motion is explained far better with it.
+    """
+
+    name: str
+    terms: tuple[MotionTerm, ...]
+    free: bool = False
+    needs_load: bool = False
+    pair: tuple[int, int] | None = None
+
+    @property
+    def joint(self) -> int | None:
+        """The joint whose own they are; None for those of a pair."""
+        return self.terms[0].joint if self.pair is None else None
+
+
+def term_groups(problem: Problem) -> tuple[TermGroup, ...]:
+    """All groups for the joints of a problem."""
+    v = np.concatenate([p.v for p in problem.fit])
+    reach = np.ptp(np.concatenate([p.q[p.keep] for p in problem.fit]), axis=0)
+    speed = np.maximum(np.quantile(np.abs(v), USUAL, axis=0), 1e-9)
+    groups = [g for j in range(problem.n_dof) for g in _of_joint(j, float(speed[j]), float(reach[j]))]
+    return (*groups, *(g for j in range(1, problem.n_dof) for g in _of_pair(j - 1, j)))
+
+
+def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:
+    return [
+        TermGroup("core", tuple(MotionTerm(kind, j) for kind in CORE), free=True),
+        TermGroup("curve", tuple(MotionTerm(kind, j, speed) for kind in BENDS)),
+        TermGroup("load", (MotionTerm("load", j),), needs_load=True),
+        TermGroup("bristle", tuple(MotionTerm("bristle", j, max(f * reach, 1e-12)) for f in BRISTLE)),
+    ]
+
+
+def _of_pair(first: int, second: int) -> list[TermGroup]:
+    """What turns with both of two neighbouring joints: drag and rotor of a coupled motor, at any ratio."""
+    smooth = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_viscous", "cross_inertia"))
+    dry = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_dry_sum", "cross_dry_difference"))
+    return [TermGroup("tie", smooth, pair=(first, second)), TermGroup("tie", dry, pair=(first, second))]

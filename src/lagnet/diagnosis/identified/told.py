@@ -1,0 +1,135 @@
+"""The identified layer as values of a verdict: combinations of inertial parameters, friction curves, and words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from lagnet.diagnosis.identified.fit import Identified
+from lagnet.models.corrected.motion_terms import BENDS, MotionTerm, bend
+from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
+
+SURE = 1.96  # standard deviations of a 95 % interval
+NOTABLE = 0.02  # of a joint's torque: a smaller change is not worth a line
+SPEEDS = 21  # points of a friction curve
+UNITS = ("kg", *("kg m",) * 3, *("kg m²",) * 6)
+
+
+def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[str]) -> dict[str, Any]:
+    """What the recordings determine beside the named physics, whatever its cause.
+
+    Args:
+        found: the layer with its equations; None where there is none.
+        robot: the model whose bodies are changed.
+        joints: names.
+
+    Returns:
+        `bodies` (combinations of inertial parameters that differ from the model, with 95 % intervals), `undetermined`
+        (combinations that the motion leaves open), `joints` (friction curve, rotor and offset of each), `ties`,
+        `samples_that_count_as_one` and `words`.
+    """
+    if found is None:
+        return {"bodies": [], "undetermined": [], "joints": [], "ties": [], "words": NOTHING}
+    bodies, open_ones = _bodies(found, robot) if found.design.n_bodies else ([], [])
+    own = [entry for j, name in enumerate(joints) if (entry := _joint(found, j, name))]
+    ties = _ties(found, joints)
+    words = _words(bodies, open_ones, own, ties)
+    told = {"bodies": bodies, "undetermined": open_ones, "joints": own, "ties": ties}
+    return {**told, "samples_that_count_as_one": found.choice.temper, "words": words}
+
+
+NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
+
+
+def _bodies(found: Identified, robot: Any) -> tuple[list[dict[str, Any]], list[str]]:
+    """Base parameters that differ, strongest first, and those of which the recordings say nothing."""
+    base: BaseParameters = base_parameters(robot)
+    scale = found.design.scale[: found.design.n_bodies]
+    per_unit = np.where(scale > 0, 1.0 / np.where(scale > 0, scale, 1.0), 0.0)
+    inner = found.choice.ridge.covariance[: scale.size, : scale.size] * per_unit[:, None] * per_unit
+    change = base.of(np.zeros((scale.size // 10, 10)) if found.layer.bodies is None else found.layer.bodies)
+    spread = np.sqrt(np.maximum(np.einsum("ri,ij,rj->r", base.combinations, inner, base.combinations), 0.0))
+    weight = scale[base.independent]  # torque per unit, in parts of the torque of the joint that feels it most
+    words = base.describe()
+    told = [
+        {
+            "combination": words[k],
+            "link": base.joints[int(base.independent[k]) // 10],
+            "change": float(change[k]),
+            "unit": UNITS[int(base.independent[k]) % 10],
+            "ci95": [float(change[k] - SURE * spread[k]), float(change[k] + SURE * spread[k])],
+            "share_of_torque": float(abs(change[k]) * weight[k]),
+        }
+        for k in np.argsort(-np.abs(change) * weight)
+        if abs(change[k]) > SURE * spread[k] and abs(change[k]) * weight[k] > NOTABLE
+    ]
+    return told, [words[k] for k in np.flatnonzero(weight <= 0)]
+
+
+def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
+    """Friction curve over speed at no load, rotor and offset of one joint, with the interval of each weight."""
+    own = [(i, t) for i, t in enumerate(found.layer.terms) if t.joint == joint and t.other is None]
+    entries = []
+    for i, term in own:
+        weight, half = float(found.layer.weights[i]), SURE * _spread(found, term)
+        if weight:
+            entries.append(
+                {"term": term.kind, "scale": term.scale, "weight": weight, "ci95": [weight - half, weight + half]}
+            )
+    if not any(e["weight"] for e in entries):
+        return None
+    return {"joint": name, "terms": entries, "friction_curve": _curve(found, joint)}
+
+
+def _spread(found: Identified, term: MotionTerm) -> float:
+    k = found.design.n_bodies + found.design.terms.index(term)
+    scale = found.design.scale[k]
+    return float(np.sqrt(max(found.choice.ridge.covariance[k, k], 0.0)) / scale) if scale > 0 else 0.0
+
+
+def _curve(found: Identified, joint: int) -> dict[str, list[float]]:
+    """Steady friction beside what is named, over speed, at no load [N m]."""
+    pairs = zip(found.layer.terms, found.layer.weights, strict=True)
+    terms = [(t, w) for t, w in pairs if t.joint == joint and t.other is None]
+    top = max((t.scale for t, _ in terms if t.kind in BENDS), default=1.0)
+    speed = np.linspace(-top, top, SPEEDS)
+    sign, torque = np.sign(speed), np.zeros(SPEEDS)
+    for term, weight in terms:
+        if term.kind in BENDS:
+            torque = torque + weight * bend(BENDS[term.kind], speed / term.scale, sign)
+        elif term.kind in ("viscous", "dry"):
+            torque = torque + weight * (speed if term.kind == "viscous" else sign)
+    return {"speed": speed.tolist(), "torque": torque.tolist()}
+
+
+def _ties(found: Identified, joints: Sequence[str]) -> list[dict[str, Any]]:
+    pairs = zip(found.layer.terms, found.layer.weights, strict=True)
+    return [
+        {"joints": [joints[t.joint], joints[t.other]], "term": t.kind, "weight": float(w)}
+        for t, w in pairs
+        if t.other is not None and w
+    ]
+
+
+def _words(bodies: list, open_ones: list, own: list, ties: list) -> str:
+    """The layer in plain English."""
+    parts = []
+    links = list(dict.fromkeys(b["link"] for b in bodies))
+    if links:
+        parts.append(f"The inertia of the links behind {_listed(links)} differs from the model's.")
+        parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
+    if own:
+        parts.append(f"Friction, rotor or offset beside the named physics at {_listed([e['joint'] for e in own])}.")
+    if ties:
+        tied = list(dict.fromkeys(" and ".join(t["joints"]) for t in ties))
+        parts.append(f"The motors of {_listed(tied)} are coupled.")
+    if open_ones:
+        more = ", ".join(open_ones[:3])
+        parts.append(f"This motion says nothing of {more}: faster motion of all joints at once would.")
+    return " ".join(parts) or NOTHING
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,152 @@
+"""Each joint of a motion problem as a case: data to fit and to judge by, a first law, typical sizes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.equation_error import FirstLaw, first_law
+from lagnet.diagnosis.motion.fitting import JointData
+from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.diagnosis.motion.selection import JointCase, SelectionLimits
+from lagnet.rollout.one_joint import JointSeries, Windows
+from lagnet.servos.catalogue import SERVO_CATALOGUE
+from lagnet.servos.effect import Scales
+from lagnet.servos.nominal import NominalServo
+from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
+
+LEAST_ERROR = 1e-4  # [rad] what the discretisation of a rollout leaves
+JUDGED = 4  # one window in so many of the fitted recordings judges
+SAMPLES = 15000  # that a search looks at; the last fit takes all
+ESTIMATED: tuple[tuple[str, ...], ...] = (("kp",), ("viscous",))  # free from the start where no servo is given
+
+
+def joint_case(
+    problem: MotionProblem,
+    fitted: int,
+    joint: int,
+    servo: NominalServo,
+    limits: SelectionLimits,
+    reference: float = 1.0,
+) -> JointCase:
+    """The case of one joint.
+
+    Args:
+        problem: all recordings; the first `fitted` of them may be fitted, the others judge alone.
+        joint: its index; servo: the nominal one.
+        reference: kp of a servo that nothing is known of where no load sets it [N m/rad].
+    """
+    series, speed = problem.series[joint], problem.speed[:, joint]
+    to_fit, to_judge = _divided(problem, fitted, joint)
+    resolution = encoder_step(series.q)
+    moving = (np.abs(speed) > 3.0 * resolution / 0.1 + 1e-4) & _inside(problem, fitted)
+    start = _first(problem, joint, moving, servo, reference)
+    known, law = servo.known[joint], servo.laws[joint].copy()
+    if not known:
+        law[[KP, VISCOUS]] = start.law[[KP, VISCOUS]]
+    excited = tuple(n for n, e in SERVO_CATALOGUE.items() if e.excitation(series.command, series.q, moving) is None)
+    if not known:
+        excited = tuple(n for n in excited if n not in ("gain_error", "viscous_friction"))
+    base = () if known else (ESTIMATED if start.scale_is_set else ESTIMATED[1:])
+    if base and np.ptp(series.enabled) > 0.0:  # friction alone acts while the drive is off
+        base = (*base, ("back_emf",))
+    floor = max(0.5 * resolution, LEAST_ERROR)
+    quick = min(2.0 * problem.step, 0.01)
+    data, held = (JointData(series, _thinned(w, series, SAMPLES), quick) for w in (to_fit, to_judge))
+    scales = _scales(series, speed, moving, law, start)
+    return JointCase(data, held, law, start.law, start.scale_is_set, base, scales, floor, excited, limits)
+
+
+def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
+    """Samples of recordings that may be fitted, shape (n,)."""
+    inside = np.zeros(len(problem.speed), dtype=bool)
+    for run in problem.runs:
+        inside[run.first : run.last + 1] = run.recording < fitted
+    return inside
+
+
+def _divided(problem: MotionProblem, fitted: int, joint: int) -> tuple[Windows, Windows]:
+    """Windows to fit and windows to judge by: all that is held out, and every fourth of the others."""
+    windows, inside = problem.windows(joint), _inside(problem, fitted)
+    of_fit = np.flatnonzero(inside[windows.first])
+    judged = ~inside[windows.first]
+    judged[of_fit[2::JUDGED]] = True
+    return _pick(windows, np.flatnonzero(~judged)), _pick(windows, np.flatnonzero(judged))
+
+
+def windows_to_fit(problem: MotionProblem, fitted: int, joint: int) -> Windows:
+    """All windows of the recordings that may be fitted."""
+    windows = problem.windows(joint)
+    return _pick(windows, np.flatnonzero(_inside(problem, fitted)[windows.first]))
+
+
+def _pick(windows: Windows, rows: np.ndarray) -> Windows:
+    return Windows(windows.first[rows], windows.last[rows], windows.floor[rows], windows.speed[rows])
+
+
+def encoder_step(q: np.ndarray) -> float:
+    """Smallest step between recorded positions [rad]; of unquantised positions nearly zero."""
+    steps = np.abs(np.diff(q))
+    steps = steps[steps > 1e-9]
+    return float(np.quantile(steps, 0.01)) if steps.size else 0.0
+
+
+def _first(fit: MotionProblem, joint: int, moving: np.ndarray, servo: NominalServo, reference: float) -> FirstLaw:
+    """A start; where no load sets the scale, the nominal damping does, else the reference gain."""
+    acceleration = np.concatenate(
+        [
+            np.gradient(fit.speed[r.first : r.last + 1, joint], fit.series[joint].time[r.first : r.last + 1])
+            for r in fit.runs
+        ]
+    )
+    found = first_law(fit.series[joint], fit.speed[:, joint], acceleration, moving, reference)
+    nominal = servo.laws[joint]
+    damping = float(nominal[VISCOUS] + nominal[KD])
+    if found.scale_is_set or not servo.known[joint]:
+        return found
+    kp = float(nominal[KP])
+    if damping > 0.0 and found.law[VISCOUS] > 0.0:
+        kp = min(kp, damping * reference / float(found.law[VISCOUS]))
+    return replace(found, law=rescaled(found.law, kp / reference))
+
+
+def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
+    """The same motion with every torque of the servo multiplied."""
+    out = law.copy()
+    for name in (
+        "kp",
+        "kd",
+        "ki",
+        "back_emf",
+        "rotor",
+        "viscous",
+        "quadratic",
+        "coulomb",
+        "static",
+        "offset",
+        "load_gain",
+    ):
+        out[INDEX[name]] *= factor if name != "load_gain" else 1.0
+    return out
+
+
+def _scales(series: JointSeries, speed: np.ndarray, moving: np.ndarray, law: np.ndarray, start: FirstLaw) -> Scales:
+    error = float(np.sqrt(np.mean((series.command - series.q) ** 2))) + 1e-9
+    pace = float(np.sqrt(np.mean(speed[moving] ** 2))) if moving.any() else 1.0
+    kp = float(start.law[KP])
+    inertia = float(series.mass.mean() + law[INDEX["rotor"]])
+    sample = float(np.median(np.diff(series.time)))
+    return Scales(kp * error, max(pace, 1e-6), error, max(inertia, 1e-9), sample, kp)
+
+
+def _thinned(windows: Windows, series: JointSeries, most: int) -> Windows:
+    """The windows with most motion, and every fifth of the others, up to a number of samples."""
+    sizes = windows.last - windows.first
+    if sizes.sum() <= most:
+        return windows
+    travel = np.array([np.ptp(series.q[a : b + 1]) for a, b in zip(windows.first, windows.last, strict=True)])
+    busy = np.argsort(-travel)
+    order = np.concatenate([busy[::2], busy[1::2][::-1]])  # the busiest half first, then the quietest of the others
+    keep = np.sort(order[: max(1, int(np.searchsorted(np.cumsum(sizes[order]), most)))])
+    return _pick(windows, keep)

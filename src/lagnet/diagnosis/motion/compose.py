@@ -1,0 +1,236 @@
+"""Puts what was found on motion into a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from lagnet._version import __version__
+from lagnet.diagnosis.motion.cases import encoder_step
+from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.localisation import locate_error, predictors
+from lagnet.diagnosis.motion.problem import motion_rates
+from lagnet.diagnosis.motion.rivals import Comparison
+from lagnet.diagnosis.motion.verdict import MotionVerdict, PositionErrors
+from lagnet.diagnosis.motion.wording import as_ratio, explain_effect
+from lagnet.diagnosis.verdict.verdict import (
+    Abstained,
+    EffectEvidence,
+    EffectFound,
+    JointFit,
+    JointMismatch,
+    NamedParameter,
+    Unexplained,
+    Verdict,
+)
+from lagnet.recordings.recording import Recording
+from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
+from lagnet.servos.nominal import NominalServo
+from lagnet.servos.parameters import INDEX, KP, LAW, NAMES
+
+ABOVE = 2.0  # times the resolution that a motion error must exceed to count
+KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
+Rollouts = tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]]
+
+
+def compose_motion_verdict(
+    robot: Any,
+    servo: NominalServo,
+    found: Sequence[JointDiagnosis | None],
+    fit: Sequence[Recording],
+    held: Sequence[Recording],
+    rollouts: Rollouts,
+    seed: int,
+) -> MotionVerdict:
+    """All parts of the verdict; rollouts are nominal, corrected and named, one of each held-out trajectory."""
+    parts = [part for recording in held for part in recording.parts()]
+    measured = np.concatenate([part.q for part in parts])
+    nominal, corrected, named = (np.concatenate(kind) - measured for kind in rollouts)
+    signals = _signals(parts, found)
+    joints = tuple(robot.joints)
+    sizes = np.array([encoder_step(measured[:, j]) / np.sqrt(12.0) for j in range(len(joints))])
+    floors = np.maximum(sizes, 1e-4)
+    rmse = [np.sqrt(np.mean(e**2, axis=0)) for e in (nominal, named, corrected)]
+    of = [[float(x) for x in r] for r in rmse]
+    errors = tuple(PositionErrors(of[0][j], of[1][j], of[2][j], float(sizes[j])) for j in range(len(joints)))
+    variance = np.maximum(np.var(measured, axis=0), floors**2)
+    effects = [e for j, d in enumerate(found) if d is not None for e in _effects(joints[j], d, servo, j)]
+    verdict = Verdict(
+        lagnet_version=__version__,
+        seed=seed,
+        nominal=_nominal_of(robot),
+        recordings=(*(_recording(r, "fit") for r in fit), *(_recording(r, "holdout") for r in held)),
+        conditioning={
+            "rate_hz": float(fit[0].rate),
+            "bandwidth_hz": float(fit[0].rate) / 2.0,
+            "velocity_from": "differentiated",
+            "acceleration_from": "differentiated",
+        },
+        joints=tuple(
+            _mismatch(joints[j], j, nominal[:, j], float(floors[j]), float(variance[j]), signals[j])
+            for j in range(len(joints))
+        ),
+        effects=tuple(sorted(effects, key=lambda e: -e.evidence.share_of_mismatch)),
+        unexplained=tuple(
+            _unexplained(joints[j], j, nominal[:, j], corrected[:, j], float(floors[j]), signals[j])
+            for j in range(len(joints))
+        ),
+        fit=tuple(
+            JointFit(
+                joints[j],
+                float(rmse[0][j] ** 2 / variance[j]),
+                float(rmse[1][j] ** 2 / variance[j]),
+                None,
+                float(floors[j] ** 2 / variance[j]),
+            )
+            for j in range(len(joints))
+        ),
+        abstentions=_abstentions(joints, found, servo),
+        warnings=tuple(dict.fromkeys([*servo.warnings, *(w for r in (*fit, *held) for w in r.warnings)])),
+    )
+    rest = tuple(None if d is None or d.rest is None else asdict(d.rest) for d in found)
+    return MotionVerdict(verdict, errors, _servo_of(servo, found, joints), rest, _rejected(joints, found))
+
+
+def _nominal_of(robot: Any) -> dict[str, Any]:
+    kind = str(getattr(robot, "kind", ""))
+    return {
+        "kind": kind if kind in KINDS else "learned",
+        "source": str(getattr(robot, "source", "") or type(robot).__name__),
+        "sha256": str(getattr(robot, "sha256", "")),
+        "joints": list(robot.joints),
+    }
+
+
+def _recording(recording: Recording, role: str) -> dict[str, Any]:
+    return {
+        "path": recording.path,
+        "role": role,
+        "sha256": recording.sha256,
+        "n_samples": len(recording),
+        "duration_s": recording.duration,
+        "rate_hz": recording.rate,
+    }
+
+
+def _signals(parts: Sequence[Recording], found: Sequence[JointDiagnosis | None]) -> list[dict[str, np.ndarray]]:
+    """What errors are located by, for each joint; loads are those of the nominal bodies."""
+    speed = np.concatenate([motion_rates(part.time, part.q)[0] for part in parts])
+    out = []
+    for j, diagnosis in enumerate(found):
+        q, command = (np.concatenate([x[:, j] for x in kind]) for kind in _both(parts))
+        load = np.zeros_like(q)
+        if diagnosis is not None:
+            load = diagnosis.case.fit.series.load[-len(q) :]  # the held-out trajectories stand last
+            load = load if len(load) == len(q) else np.zeros_like(q)
+        time = np.concatenate([part.time for part in parts])
+        out.append({"q": q, "v": speed[:, j], "load": load, "command": command, "time": time})
+    return out
+
+
+def _both(parts: Sequence[Recording]) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    return [np.array(p.q) for p in parts], [np.array(p.command) for p in parts]
+
+
+def _mismatch(
+    name: str, joint: int, error: np.ndarray, floor: float, variance: float, signals: dict[str, np.ndarray]
+) -> JointMismatch:
+    rms = float(np.sqrt(np.mean(error**2)))
+    significant = rms > ABOVE * floor
+    where = locate_error(error, signals, joint) if significant else ()
+    return JointMismatch(name, bool(significant), rms, floor, rms**2 / variance, where)
+
+
+def _unexplained(
+    name: str, joint: int, nominal: np.ndarray, corrected: np.ndarray, floor: float, signals: dict[str, np.ndarray]
+) -> Unexplained:
+    rest = float(np.mean(corrected**2))
+    above = rest > (ABOVE * floor) ** 2
+    share = min(1.0, rest / max(float(np.mean(nominal**2)), 1e-300))
+    return Unexplained(name, bool(above), share, predictors(corrected, signals, joint) if above else ())
+
+
+def _effects(name: str, found: JointDiagnosis, servo: NominalServo, joint: int) -> list[EffectFound]:
+    total = max(sum(max(c.gain, 0.0) for c in found.comparisons), 1e-12)
+    return [_effect(name, found, c, total) for c in found.comparisons]
+
+
+def _effect(name: str, found: JointDiagnosis, comparison: Comparison, total: float) -> EffectFound:
+    law = servo_effect(comparison.effect)
+    values, kp = law.read(found.named_law), float(found.named_law[KP])
+    before = law.read(found.nominal)
+    parameters = []
+    for p, names in zip(law.parameters, law.frees, strict=True):
+        value = values[p.name]
+        low, high = found.intervals.get(names[0], (value, value))
+        parameters.append(NamedParameter(p.name, value, p.unit, (min(low, value), max(high, value))))
+    told = tuple(parameters if found.case.scale_is_set else (as_ratio(p, kp) for p in parameters))
+    power = float(np.exp(2.0 * found.named.blocks).mean()) / max(float(np.var(found.case.fit.series.q)), 1e-12)
+    evidence = EffectEvidence(
+        power * float(np.exp(2.0 * comparison.gain)),
+        power,
+        max(comparison.gain, 0.0) / total,
+        comparison.best_rival,
+        comparison.log10_odds,
+    )
+    nominal = {p.name: before[p.name] for p in law.parameters if abs(before[p.name]) not in (0.0, 1e9)}
+    words = explain_effect(law.name, name, told, comparison.tied, comparison.gain, nominal)
+    status = "tied" if comparison.tied else "named"
+    return EffectFound(law.name, name, status, comparison.tied, told, evidence, words)
+
+
+def _abstentions(
+    joints: Sequence[str], found: Sequence[JointDiagnosis | None], servo: NominalServo
+) -> tuple[Abstained, ...]:
+    out = []
+    for joint, diagnosis in zip(joints, found, strict=True):
+        if diagnosis is None:
+            reason, advice = "the joint does not move", f"record a motion of {joint}"
+            out += [Abstained(name, joint, reason, advice) for name in SERVO_CATALOGUE]
+            continue
+        case = diagnosis.case
+        if not case.scale_is_set:
+            why = (
+                "nothing in the motion sets the scale of torques: no load that differs; values are in proportion to kp"
+            )
+            out.append(Abstained("gain_error", joint, why, f"rest and move {joint} under gravity or a known payload"))
+        for name, law in SERVO_CATALOGUE.items():
+            if name in case.excited or name in ("gain_error", "viscous_friction"):
+                continue
+            reason = law.excitation(
+                case.fit.series.command, case.fit.series.q, np.abs(np.gradient(case.fit.series.q)) > 0
+            )
+            out.append(Abstained(name, joint, reason or "the motion cannot show it", f"a motion that {law.shown_by}"))
+    return tuple(out)
+
+
+def _servo_of(servo: NominalServo, found: Sequence[JointDiagnosis | None], joints: Sequence[str]) -> dict[str, Any]:
+    """Where the nominal servos came from, and every law that differs from neutral, before and after."""
+    rows = []
+    for j, diagnosis in enumerate(found):
+        before = servo.laws[j] if diagnosis is None or servo.known[j] else diagnosis.nominal
+        after = before if diagnosis is None else diagnosis.law
+        row: dict[str, Any] = {"joint": joints[j], "source": servo.source if servo.known[j] else "estimated"}
+        row["scale_is_set"] = diagnosis is not None and diagnosis.case.scale_is_set
+        for key, law in (("nominal", before), ("corrected", after)):
+            row[key] = {n: float(law[INDEX[n]]) for n in NAMES if law[INDEX[n]] != LAW[INDEX[n]].neutral}
+        rows.append(row)
+    return {"source": servo.source, "joints": rows}
+
+
+def _rejected(joints: Sequence[str], found: Sequence[JointDiagnosis | None]) -> tuple[dict[str, Any], ...]:
+    out = []
+    for joint, diagnosis in zip(joints, found, strict=True):
+        for r in () if diagnosis is None else diagnosis.rejected:
+            detail = {
+                "no_holdout_gain": "errors on motion that was not fitted hardly shrink with it",
+                "not_significant": "the gain on motion that was not fitted is within its scatter",
+                "below_resolution": "it changes the predicted motion by less than half a step of the encoder [rad]",
+                "near_nominal": "its parameters are those of the nominal servo but for a few percent",
+            }[r.rule]
+            entry = {"effect": r.effect, "joint": joint, "rule": r.rule, "value": r.value, "limit": r.limit}
+            out.append(entry | {"detail": detail})
+    return tuple(out)

@@ -1,0 +1,191 @@
+"""Commands in, motion out: what a nominal robot and its servos lack, judged by rollouts of held-out recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from lagnet.diagnosis.motion.cases import joint_case
+from lagnet.diagnosis.motion.compose import compose_motion_verdict
+from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis, diagnose_joint
+from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
+from lagnet.diagnosis.motion.selection import SelectionLimits
+from lagnet.diagnosis.motion.verdict import MotionVerdict
+from lagnet.errors import DiagnosisError
+from lagnet.models.corrected.servo_driven import ServoDrivenModel
+from lagnet.recordings.recording import Recording
+from lagnet.recordings.splits import holdout_split
+from lagnet.rigid_body.kinematic_tree import kinematic_tree
+from lagnet.rigid_body.mjcf_actuators import position_actuators
+from lagnet.rigid_body.robot import Robot
+from lagnet.servos.nominal import NominalServo
+from lagnet.servos.parameters import INDEX, KD, KP
+from lagnet.servos.servo_file import servo_of_values
+
+STILL = 3  # encoder steps that a joint must move by to be diagnosed
+REFERENCE = 1.0  # [N m/rad] kp in which torques are written where nothing at all sets their scale
+
+
+@dataclass(frozen=True, eq=False)
+class MotionDiagnosis:
+    """What a diagnosis on motion gives back.
+
+    Args:
+        verdict: the conclusions; corrected: the robot with its corrected servos; nominal: with those assumed.
+        joints: what was found at each joint, None for one that does not move.
+        fit_recordings, holdout_recordings: what was used for what.
+        nominal_rollouts, corrected_rollouts: for each held-out trajectory, shape (n, dof) [rad or m].
+        problem: the arrays behind it; the first `fitted` recordings were fitted.
+    """
+
+    verdict: MotionVerdict
+    corrected: ServoDrivenModel
+    nominal: ServoDrivenModel
+    joints: tuple[JointDiagnosis | None, ...]
+    fit_recordings: tuple[Recording, ...]
+    holdout_recordings: tuple[Recording, ...]
+    nominal_rollouts: tuple[np.ndarray, ...]
+    corrected_rollouts: tuple[np.ndarray, ...]
+    problem: MotionProblem
+    fitted: int
+
+    @property
+    def effects(self) -> tuple[Any, ...]:
+        """The physics that was left out, strongest first."""
+        return self.verdict.effects
+
+    def to_json(self) -> str:
+        """The text of verdict.json."""
+        return self.verdict.to_json()
+
+
+def diagnose_motion(
+    recordings: Sequence[Recording],
+    robot: Any,
+    holdout: Sequence[Recording] | None = None,
+    *,
+    servo: NominalServo | None = None,
+    gains: Sequence[float] | None = None,
+    limits: SelectionLimits | None = None,
+    seed: int = 0,
+) -> MotionDiagnosis:
+    """Says where rollouts of commands and recorded motion differ, names the physics left out, and corrects the servos.
+
+    Args:
+        recordings: with commands and positions, joints as the robot's.
+        robot: the nominal robot, or the servo-driven model of an earlier diagnosis.
+        holdout: recordings that are not fitted; None: the last fifth of each recording.
+        servo: the nominal servos; None: those of the MJCF's actuators, else estimated.
+        gains: the controller's gains in each recording, then in each of `holdout`, relative to the nominal servo's.
+        limits: what a name must stand.
+        seed: kept with the verdict; nothing here is random.
+
+    Raises:
+        DiagnosisError: no recording, joints that are not the robot's, or a recording without commands.
+    """
+    fit_on, held, factors = _divide(recordings, robot, holdout, gains)
+    bodies, servo = _nominal(robot, servo)
+    tree = kinematic_tree(bodies)
+    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on))
+    joints = _diagnose_joints(problem, len(fit_on), servo, limits or SelectionLimits())
+    scales = tuple(j is not None and j.case.scale_is_set for j in joints)
+    supply = median_voltage(fit_on)
+    pairs = [(servo.laws[i], servo.laws[i]) if j is None else (j.nominal, j.law) for i, j in enumerate(joints)]
+    laws = [_as_given(servo, i, nominal) for i, (nominal, _) in enumerate(pairs)]
+    nominal = ServoDrivenModel(bodies, np.array(laws), scales, supply)
+    corrected = ServoDrivenModel(bodies, np.array([law for _, law in pairs]), scales, supply)
+    factors = factors or [1.0] * (len(fit_on) + len(held))
+    before, after = (
+        tuple(_roll(model, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
+        for model in (nominal, corrected)
+    )
+    named = ServoDrivenModel(
+        bodies, np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)]), scales, supply
+    )
+    of_names = tuple(_roll(named, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
+    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, of_names), seed)
+    return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
+
+
+def _as_given(servo: NominalServo, joint: int, estimated: np.ndarray) -> np.ndarray:
+    return servo.laws[joint] if servo.known[joint] else estimated
+
+
+def _nominal(robot: Any, servo: NominalServo | None) -> tuple[Any, NominalServo]:
+    """The bodies and the servos that are assumed."""
+    if isinstance(robot, ServoDrivenModel):
+        given = NominalServo(robot.laws, (True,) * robot.n_dof, "file")
+        return robot.nominal, servo or given
+    if not hasattr(robot, "inertial_parameters") or not hasattr(robot, "kind"):
+        raise DiagnosisError(
+            "motion is diagnosed against rigid bodies", next_step="give a URDF, an MJCF, a name such as ur5"
+        )
+    bodies = robot.bodies() if hasattr(robot, "bodies") and callable(robot.bodies) else robot
+    if servo is not None:
+        return bodies, servo
+    given, notes = position_actuators(cast(Robot, bodies))
+    return bodies, servo_of_values(given, bodies.joints, bodies.armature, "mjcf", notes)
+
+
+def _divide(
+    recordings: Sequence[Recording],
+    robot: Any,
+    holdout: Sequence[Recording] | None,
+    gains: Sequence[float] | None,
+) -> tuple[tuple[Recording, ...], tuple[Recording, ...], list[float] | None]:
+    if not recordings:
+        raise DiagnosisError("no recording was given", next_step="give at least one of commands and positions")
+    for recording in (*recordings, *(holdout or ())):
+        if recording.n_dof != robot.n_dof:
+            what = f"the recording has {recording.n_dof} joints, the model {robot.n_dof}"
+            raise DiagnosisError(what, where=recording.path or None, choices=robot.joints)
+        if recording.command is None:
+            raise DiagnosisError("holds no commands", where=recording.path or None, next_step="record command_i")
+    if gains is not None and len(gains) != len(recordings) + len(holdout or ()):
+        raise DiagnosisError(f"{len(gains)} gains were given for {len(recordings) + len(holdout or ())} recordings")
+    if holdout:
+        return tuple(recordings), tuple(holdout), None if gains is None else list(gains)
+    fit, held = holdout_split(recordings)
+    return fit, held, None if gains is None else [*gains, *gains]
+
+
+def _diagnose_joints(
+    problem: MotionProblem, fitted: int, servo: NominalServo, limits: SelectionLimits
+) -> tuple[JointDiagnosis | None, ...]:
+    """Joints whose loads set the scale of their torques first: the others are written in the gain of those."""
+    cases = {}
+    for joint in range(len(problem.joints)):
+        q = problem.series[joint].q
+        if np.ptp(q) > 1e-6 and np.sum(np.abs(np.diff(q)) > 1e-9) > STILL:
+            cases[joint] = joint_case(problem, fitted, joint, servo, limits, REFERENCE)
+    found: dict[int, JointDiagnosis] = {}
+    for joint, case in cases.items():
+        if case.scale_is_set:
+            found[joint] = diagnose_joint(problem, fitted, joint, case)
+    share = _gain_share(found, servo)
+    for joint, case in cases.items():
+        if joint in found:
+            continue
+        assumed = servo
+        if share is not None and servo.known[joint]:
+            laws = servo.laws.copy()
+            laws[joint, [KP, KD, INDEX["ki"]]] *= share
+            assumed = NominalServo(laws, servo.known, servo.source)
+        gain = np.median([j.law[KP] for j in found.values()]) if found else REFERENCE
+        case = joint_case(problem, fitted, joint, assumed, limits, float(gain))
+        found[joint] = diagnose_joint(problem, fitted, joint, case)
+    return tuple(found.get(joint) for joint in range(len(problem.joints)))
+
+
+def _gain_share(found: dict[int, JointDiagnosis], servo: NominalServo) -> float | None:
+    """Found over nominal gain, the middle of the joints whose scale is set."""
+    shares = [d.named_law[KP] / servo.laws[j, KP] for j, d in found.items() if servo.known[j]]
+    return float(np.median(shares)) if shares else None
+
+
+def _roll(model: ServoDrivenModel, part: Recording, gain: float) -> np.ndarray:
+    signals = {"enabled": part.enabled, "voltage": part.voltage, "gain": gain}
+    return model.rollout(np.array(part.command), part.time, part.q[0], **signals)

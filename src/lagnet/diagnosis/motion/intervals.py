@@ -1,0 +1,39 @@
+"""Intervals of a law's parameters, from how much the windows of the motion disagree about them.
+
+Cov = H⁻¹ S H⁻¹ with H the Gauss–Newton matrix and S the scatter of the windows' scores: residuals of a rollout are
+correlated and not those of the law alone, so samples are not counted as if they were independent. Source: White 1982.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.diagnosis.motion.fitting import HUBER, Coordinates, JointData, sensitivities
+
+NORMAL_95 = 1.96
+
+
+def law_intervals(
+    data: JointData, law: np.ndarray, coordinates: Coordinates, scale: float
+) -> dict[str, tuple[float, float]]:
+    """95 % interval of every free law parameter, by name."""
+    if not coordinates.groups:
+        return {}
+    predicted, jacobian = sensitivities(data, coordinates, law)
+    residual = predicted - data.series.q
+    weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * scale))
+    rows = zip(data.windows.first, data.windows.last, strict=True)
+    scores = np.array([jacobian[a : b + 1].T @ (weight[a : b + 1] * residual[a : b + 1]) for a, b in rows])
+    normal = (jacobian * weight[:, None]).T @ jacobian
+    ridge = 1e-9 * max(float(np.trace(normal)), 1e-30) / len(normal)
+    inverse = np.linalg.inv(normal + ridge * np.eye(len(normal)))
+    count = len(scores)
+    spread = scores - scores.mean(axis=0)
+    covariance = inverse @ (spread.T @ spread) @ inverse * count / max(1, count - len(normal))
+    half = NORMAL_95 * np.sqrt(np.maximum(np.diag(covariance), 0.0)) * coordinates.sizes
+    values = coordinates.read(law)
+    out = {}
+    for group, value, width in zip(coordinates.groups, values, half, strict=True):
+        for name in group:
+            out[name] = (float(value - width), float(value + width))
+    return out

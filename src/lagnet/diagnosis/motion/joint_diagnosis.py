@@ -1,0 +1,142 @@
+"""One joint from its case to its findings: nominal law, named effects against rivals, the complete law, intervals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.cases import windows_to_fit
+from lagnet.diagnosis.motion.fitting import JointData, fit_law, free_coordinates, robust_scale
+from lagnet.diagnosis.motion.intervals import law_intervals
+from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.diagnosis.motion.rest import RestBand, rest_band
+from lagnet.diagnosis.motion.rivals import Comparison, compare_rivals
+from lagnet.diagnosis.motion.selection import (
+    JointCase,
+    Rejected,
+    Selection,
+    advantage,
+    groups_of,
+    refit,
+    select,
+    sizes_of,
+    starts_with,
+)
+from lagnet.servos.catalogue import servo_effect
+
+IDENTIFIED = (
+    "gain_error",
+    "viscous_friction",
+    "coulomb_friction",
+    "load_dependent_friction",
+    "position_bias",
+    "command_delay",
+    "rotor_inertia",
+    "quadratic_drag",
+    "stribeck_friction",
+)  # what the complete correction may use, whether or not it can be attributed
+FURTHER = ("duty_saturation", "directional_load_friction", "quadratic_load_friction", "static_friction", "dead_band")
+
+
+@dataclass(frozen=True, eq=False)
+class JointDiagnosis:
+    """All that was found out about one joint.
+
+    Args:
+        case: what it was posed as; nominal: the nominal law, fitted where no servo was given.
+        named: effects with evidence; comparisons: one for each; rejected: what was considered and not named.
+        intervals: 95 % interval of every free law parameter of the named effects.
+        named_law: the nominal law with the named effects; law: the complete correction.
+        rest: the friction band of the rest positions, None where the joint seldom rests.
+    """
+
+    case: JointCase
+    nominal: np.ndarray
+    named: Selection
+    comparisons: tuple[Comparison, ...]
+    rejected: tuple[Rejected, ...]
+    intervals: dict[str, tuple[float, float]]
+    law: np.ndarray
+    rest: RestBand | None
+
+    @property
+    def named_law(self) -> np.ndarray:
+        return self.named.law
+
+
+def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointCase) -> JointDiagnosis:
+    """Everything about one joint.
+
+    Args:
+        problem: all recordings, of which the first `fitted` may be fitted.
+        joint: its index; case: of it.
+    """
+    nominal = case.law
+    if case.base:
+        nominal = refit(case, (), case.law, robust_scale(case.fit.errors(case.law), case.floor)).law
+    case = replace(case, law=nominal)
+    chosen, rejected = select(case)
+    chosen, comparisons = compare_rivals(case, chosen)
+    data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint))
+    named = _polished(case, chosen, data)
+    scale = robust_scale(named.fitted.residual, case.floor)
+    coordinates = free_coordinates(groups_of(case, named.effects), named.law, sizes_of(case.scales))
+    intervals = law_intervals(data, named.law, coordinates, scale)
+    rest = rest_band(problem.series[joint], 2.0 * case.floor)
+    law = _complete(case, chosen, named, data)
+    return JointDiagnosis(case, nominal, named, comparisons, rejected, intervals, law, rest)
+
+
+def _polished(case: JointCase, chosen: Selection, data: JointData) -> Selection:
+    """The chosen effects fitted to every window of the fitted recordings."""
+    scale = robust_scale(data.errors(chosen.law), case.floor)
+    coordinates = free_coordinates(groups_of(case, chosen.effects), chosen.law, sizes_of(case.scales))
+    return replace(chosen, fitted=fit_law(data, chosen.law, coordinates, scale=scale))
+
+
+def _complete(case: JointCase, chosen: Selection, named: Selection, data: JointData) -> np.ndarray:
+    """The law that predicts best, whatever its causes: all plain effects beside the named ones, if that helps."""
+    contained = {c for e in chosen.effects for c in servo_effect(e).contains}
+    more = [e for e in IDENTIFIED if e in case.excited and e not in {*chosen.effects, *contained}]
+    more = [e for e in more if case.scale_is_set or e != "gain_error"]
+    if "stribeck_friction" in more:
+        more = [e for e in more if e != "coulomb_friction"]
+    scale = robust_scale(chosen.fitted.residual, case.floor)
+    best = _best_of(case, chosen.law, (*chosen.effects, *more), scale)
+    for extra in FURTHER:
+        if extra in case.excited and extra not in best.effects:
+            kept = tuple(e for e in best.effects if e not in servo_effect(extra).contains)
+            starts = starts_with(case, best, extra)
+            tries = [
+                refit(case, (*kept, extra), start, robust_scale(best.fitted.residual, case.floor)) for start in starts
+            ]
+            better = min(tries, key=lambda s: s.blocks.mean())
+            gain, errors = advantage(best.blocks, better.blocks)
+            if gain > case.limits.gain and errors > case.limits.tie:
+                best = better
+    if advantage(chosen.blocks, best.blocks)[0] <= 0.0:
+        return named.law
+    return _polished(case, best, data).law
+
+
+def _best_of(case: JointCase, law: np.ndarray, effects: tuple[str, ...], scale: float) -> Selection:
+    """The better of two starts: the law of the named effects, with and without the plain effects of smoothed motion."""
+    starts = [_spread(start, case, effects) for start in (law, _merged(law, case))]
+    return min((refit(case, effects, start, scale) for start in starts), key=lambda s: s.blocks.mean())
+
+
+def _spread(law: np.ndarray, case: JointCase, effects: tuple[str, ...]) -> np.ndarray:
+    """A law whose Stribeck speed is not zero where it is free, so that a fit can move it."""
+    out = law.copy()
+    if "stribeck_friction" in effects:
+        shape = servo_effect("stribeck_friction")
+        values = shape.read(out)
+        if values["vs"] == 0.0:
+            out = shape.apply(out, values | {"vs": 0.3 * case.scales.speed})
+    return out
+
+
+def _merged(law: np.ndarray, case: JointCase) -> np.ndarray:
+    """The law with the plain effects of the smoothed motion where it has none."""
+    return np.where(law == case.law, case.start, law) if case.scale_is_set else law

@@ -1,0 +1,151 @@
+"""What is compared on motion: every joint's commands, its measured positions and the load of the nominal bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from lagnet.errors import DiagnosisError
+from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.kinematic_tree import KinematicTree
+from lagnet.rollout.measured_load import measured_load
+from lagnet.rollout.one_joint import JointSeries, Windows
+from lagnet.servos.command_delay import command_integral
+
+SMOOTHING = 0.16  # [s] stretch over which a cubic gives speed and acceleration
+SLOPES = 0.1  # [s] between poses at which the slope of the load is computed
+WINDOW = (1.0, 4.0)  # [s] of a rollout that starts from measured positions
+WINDOWS = 60  # that there should be at least
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One trajectory of one recording: rows `first` to `last` of the problem's arrays."""
+
+    recording: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, eq=False)
+class MotionProblem:
+    """Recorded motion of all joints on the recordings' own clocks.
+
+    Args:
+        joints: joint names in model order; tree: the nominal bodies.
+        series: for each joint what drives it.
+        runs: the trajectories, one after the other.
+        speed: shape (n, dof), smoothed measured speed [rad/s].
+        step: longest step of integration [s].
+    """
+
+    joints: tuple[str, ...]
+    tree: KinematicTree
+    series: tuple[JointSeries, ...]
+    runs: tuple[Run, ...]
+    speed: np.ndarray
+    step: float
+
+    def whole(self) -> Windows:
+        """Every trajectory from its first sample on, at rest there."""
+        first = np.array([run.first for run in self.runs])
+        return Windows(first, np.array([run.last for run in self.runs]), first, np.zeros(len(first)))
+
+    @property
+    def duration(self) -> float:
+        """Recorded time of all trajectories [s]."""
+        time = self.series[0].time
+        return float(sum(time[run.last] - time[run.first] for run in self.runs))
+
+    def windows(self, joint: int) -> Windows:
+        """Stretches that start from a joint's measured position and speed, shorter where there is little motion."""
+        length = float(np.clip(self.duration / WINDOWS, *WINDOW))
+        time, rows = self.series[joint].time, []
+        for run in self.runs:
+            count = max(1, round((time[run.last] - time[run.first]) / length))
+            edges = np.linspace(run.first, run.last, count + 1).astype(int)
+            rows += [(a, b, run.first) for a, b in pairwise(edges) if b > a]
+        first, last, floor = (np.array(column) for column in zip(*rows, strict=True))
+        speed = np.where(first == floor, 0.0, self.speed[first, joint])
+        return Windows(first, last, floor, speed)
+
+
+def pose_motion_problem(
+    recordings: Sequence[Recording], tree: KinematicTree, gains: Sequence[float] | None = None, voltage: float = 0.0
+) -> MotionProblem:
+    """Commands, motion and nominal loads of recordings, joint by joint.
+
+    Args:
+        recordings: with commands, joints as the tree's.
+        tree: the nominal bodies.
+        gains: the controller's gains in each recording over those of the law, 1 where None.
+        voltage: nominal supply [V]; 0: the median of what was recorded.
+
+    Raises:
+        DiagnosisError: a recording without commands, or with fewer than ten samples in every trajectory.
+    """
+    parts = [(i, part) for i, recording in enumerate(recordings) for part in recording.parts() if len(part) >= 10]
+    if not parts:
+        raise DiagnosisError("no trajectory has ten samples", next_step="give longer recordings")
+    voltage = voltage or median_voltage(recordings)
+    blocks = [_block(part, tree, 1.0 if gains is None else gains[i], voltage) for i, part in parts]
+    sizes = np.cumsum([0, *(len(part) for _, part in parts)])
+    runs = tuple(Run(i, int(sizes[k]), int(sizes[k + 1]) - 1) for k, (i, _) in enumerate(parts))
+    rows = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+    names = tuple(JointSeries.__dataclass_fields__)
+    series = tuple(
+        JointSeries(*(np.ascontiguousarray(rows[n] if n == "time" else rows[n][:, j]) for n in names))
+        for j in range(parts[0][1].n_dof)
+    )
+    step = float(np.clip(np.median(np.diff(parts[0][1].time)), 0.001, 0.005))
+    return MotionProblem(recordings[0].joints, tree, series, runs, rows["speed"], step)
+
+
+def median_voltage(recordings: Sequence[Recording]) -> float:
+    found = [r.voltage[np.isfinite(r.voltage)] for r in recordings if r.voltage is not None]
+    return float(np.median(np.concatenate(found))) if found else 0.0
+
+
+def _block(part: Recording, tree: KinematicTree, gain: float, voltage: float) -> dict[str, np.ndarray]:
+    """The columns of one trajectory, each of shape (n, dof) beside `time`."""
+    if part.command is None:
+        raise DiagnosisError(
+            "holds no commands", where=part.path or None, next_step="record command_i, or diagnose on torque"
+        )
+    command, q = np.array(part.command), np.array(part.q)
+    speed, acceleration = motion_rates(part.time, q)
+    stride = max(1, int(SLOPES / float(np.median(np.diff(part.time)))))
+    mass, load, slope = measured_load(tree, q, speed, acceleration, stride)
+    ones = np.ones_like(q)
+    return {
+        "time": np.array(part.time),
+        "command": command,
+        "integral": command_integral(part.time, command),
+        "q": q,
+        "mass": mass,
+        "load": load,
+        "load_slope": slope,
+        "ratio": ones if part.voltage is None or not voltage else np.array(part.voltage) / voltage,
+        "gain": gain * ones,
+        "enabled": ones if part.enabled is None else np.array(part.enabled, dtype=float),
+        "speed": speed,
+    }
+
+
+def motion_rates(time: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Speed and acceleration by local cubics over `SMOOTHING` seconds, each of shape (n, dof)."""
+    half = max(2, round(0.5 * SMOOTHING / float(np.median(np.diff(time)))))
+    length = min(2 * half + 1, len(time) - 1 + len(time) % 2)
+    pace = np.asarray(savgol_filter(time, length, 3, deriv=1))[:, None]
+    speed, bend = (np.asarray(savgol_filter(q, length, 3, deriv=order, axis=0)) for order in (1, 2))
+    return speed / pace, bend / pace**2
+
+
+def is_a_servo_recording(recording: Any) -> bool:
+    """Whether a recording says how its joints were commanded, and no torque."""
+    return recording.command is not None and recording.tau is None and recording.current is None

@@ -1,0 +1,47 @@
+"""Sentences of a verdict on motion that an engineer can act on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from lagnet.diagnosis.verdict.verdict import NamedParameter
+from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
+
+RATIOS = {"N m": "rad", "N m/rad": "", "N m s/rad": "s", "kg m²": "s²", "N m s²/rad²": "s²/rad"}
+
+
+def explain_effect(
+    name: str,
+    joint: str,
+    parameters: Sequence[NamedParameter],
+    tied: Sequence[str],
+    gain: float,
+    nominal: dict[str, float],
+) -> str:
+    """What, where, how large against the nominal value, and what it does for the held-out rollouts."""
+    law = servo_effect(name)
+    shown = ", ".join(
+        f"{p.name} = {p.value:.4g} {p.unit}".rstrip()
+        + (f" (nominal {nominal[p.name]:.4g})" if nominal.get(p.name) else "")
+        for p in parameters
+    )
+    text = f"{law.title} at {joint}, {law.formula} with {shown}: without it errors of position on motion that was not "
+    text += f"fitted are {100.0 * (2.718281828**gain - 1.0):.0f} % larger."
+    if tied:
+        names = " or ".join(t.replace("_", " ") for t in tied)
+        text += f" These recordings cannot tell it from {names}. What would: a recording that {separating(name, tied)}."
+    return text
+
+
+def separating(name: str, tied: Sequence[str]) -> str:
+    """The motion that shows the effect and that which shows its rivals."""
+    shown = [servo_effect(n).shown_by for n in (name, *tied) if n in SERVO_CATALOGUE]
+    return " and ".join(dict.fromkeys(shown))
+
+
+def as_ratio(parameter: NamedParameter, kp: float) -> NamedParameter:
+    """A torque in proportion to kp, where nothing sets its scale in N m; lengths and times stay."""
+    if parameter.unit not in RATIOS or parameter.name == "kp":
+        return parameter
+    low, high = parameter.ci95
+    return NamedParameter(f"{parameter.name}/kp", parameter.value / kp, RATIOS[parameter.unit], (low / kp, high / kp))

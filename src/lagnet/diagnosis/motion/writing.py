@@ -1,0 +1,46 @@
+"""Writes what a diagnosis on motion promises: verdict.json, holdout_motion.parquet and the corrected model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
+from lagnet.models.corrected.servo_driven import save_servo_driven
+
+
+def write_motion_diagnosis(diagnosis: MotionDiagnosis, folder: str | Path) -> Path:
+    """Writes verdict.json, holdout_motion.parquet and corrected/ into a folder.
+
+    Returns:
+        The folder.
+    """
+    out = Path(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    pq.write_table(holdout_motion_table(diagnosis), out / "holdout_motion.parquet")
+    effects = [{"effect": e.effect, "joint": e.joint, "status": e.status} for e in diagnosis.effects]
+    save_servo_driven(diagnosis.corrected, out / "corrected", {"effects": effects})
+    (out / "verdict.json").write_text(diagnosis.to_json(), encoding="utf-8")
+    return out
+
+
+def holdout_motion_table(diagnosis: MotionDiagnosis) -> pa.Table:
+    """Measured, nominal and corrected positions at every held-out sample, rolled out from each first sample alone."""
+    columns: dict[str, list[np.ndarray]] = {}
+    names: list[str] = []
+    parts = [(r, i, p) for i, r in enumerate(diagnosis.holdout_recordings) for p in r.parts()]
+    for k, (recording, index, part) in enumerate(parts):
+        kinds = {
+            "measured": np.array(part.q),
+            "nominal": diagnosis.nominal_rollouts[k],
+            "corrected": diagnosis.corrected_rollouts[k],
+        }
+        columns.setdefault("time", []).append(part.time)
+        for joint in range(recording.n_dof):
+            for kind, q in kinds.items():
+                columns.setdefault(f"q_{kind}_{joint}", []).append(q[:, joint])
+        names.extend([recording.path or f"recording {index + 1}"] * len(part))
+    return pa.table({"recording": names} | {name: np.concatenate(values) for name, values in columns.items()})

@@ -1,0 +1,103 @@
+"""The steps of a diagnosis in their order, on a problem already posed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
+from lagnet.diagnosis.estimation.misspecification import misspecification_errors, widened, with_convention
+from lagnet.diagnosis.estimation.refit import Refit
+from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
+from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
+from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
+from lagnet.diagnosis.identifiability.unexcited_rivals import with_unexcited_rivals
+from lagnet.diagnosis.problem.intervals import set_aside, too_much
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.regression.block_gram import collect_block_grams
+from lagnet.diagnosis.regression.cross_validation import sum_normal_equations
+from lagnet.diagnosis.rules.apply import apply_rules
+from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.rules.rule import RejectionRule
+from lagnet.diagnosis.selection.iterated_search import search
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.recordings.conditioning.condition import Conditioned
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """The inputs of a run of the pipeline beside the problem.
+
+    Args:
+        fit, holdout: the recordings on an even clock.
+        noise: shape (dof,), noise floor [N m].
+        rules: that every named effect must pass.
+        seed: of everything random.
+    """
+
+    fit: Conditioned
+    holdout: Conditioned
+    noise: np.ndarray
+    rules: Sequence[RejectionRule]
+    seed: int
+
+
+def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
+    """Search, elimination, comparison with rivals, and what is held out, in this order."""
+    problem, equations, found = search(problem, given.noise)
+    unseen = sum_normal_equations(
+        equations.library, collect_block_grams(problem, equations.library, problem.holdout), problem.limits
+    )
+    first = Candidate(problem, equations, unseen, found, given.noise, given.seed)
+    left = apply_rules(given.rules, first)
+    candidate, rejected = left.candidate, left.rejected
+    comparisons = _comparisons(candidate)
+    ambiguous = ambiguous_causes(equations.library, comparisons, problem.limits.most_names)
+    if ambiguous:
+        again = apply_rules([r for r in given.rules if r.after_each_fit], candidate.without(*ambiguous))
+        candidate, rejected = again.candidate, (*rejected, *again.rejected)
+        comparisons = _comparisons(candidate)
+    fitted, found = candidate.refit, candidate.selection
+    problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
+    return DiagnosisState(
+        problem,
+        given.fit,
+        given.holdout,
+        given.noise,
+        equations.library,
+        equations,
+        unseen,
+        found,
+        comparisons,
+        candidate.holdout_gain,
+        fitted,
+        given.seed,
+        rejected,
+        ambiguous=tuple(ambiguous.values()),
+    )
+
+
+def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
+    comparisons = compare_with_rivals(candidate.equations, candidate.selection)
+    comparisons = with_unexcited_rivals(candidate.problem, candidate.library, candidate.selection, comparisons)
+    return tie_equivalent_laws(candidate.library, comparisons, candidate.effects)
+
+
+def with_misspecification(state: DiagnosisState) -> DiagnosisState:
+    """The same with 95 % intervals √(h² + δp²), widened by misspecification errors δp; names and values stay."""
+    effects = state.effects
+    if not effects:
+        return state
+    masked = set_aside(state.problem, state.events)
+    problem = state.problem if too_much(state.problem, masked) else masked
+    power = np.maximum(state.selection.fit.sse, state.selection.scales.noise_power)
+    found = misspecification_errors(problem, effects, np.sqrt(power / state.equations.samples))
+    errors = [with_convention(*pair) for pair in zip(effects, found, strict=True)]
+    old = (*state.refit.intervals, *(p.intervals for p in state.transients))
+    wide = [widened(*pair) for pair in zip(old, errors, strict=True)]
+    n = len(state.refit.effects)
+    refit = Refit(state.refit.effects, tuple(wide[:n]), state.refit.correlations)
+    transients = tuple(replace(p, intervals=w) for p, w in zip(state.transients, wide[n:], strict=True))
+    return replace(state, refit=refit, transients=transients)

@@ -1,0 +1,100 @@
+"""The residual: measured torque less that of the nominal model with effects, low-passed and decimated alike.
+
+r = F(τ − τ_nominal − Σ τ_effect), with F the zero-phase low-pass of the diagnosis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.effects.motion import Motion
+from lagnet.models.corrected.model import NamedEffect, torque_with
+
+
+@dataclass(frozen=True, eq=False)
+class RecordingResidual:
+    """r(t) of one recording at its valid samples, after decimation.
+
+    Args:
+        motion: at the samples that are kept; its recording is the fitted one that it belongs to, None for another.
+        rest: shape (n, dof), residual r of the model with its effects, low-passed [N m].
+        counts: shape (n, dof), which samples are valid: False where a joint rests.
+        index: of the recording among those fitted, or among those held out.
+    """
+
+    motion: Motion
+    rest: np.ndarray
+    counts: np.ndarray
+    index: int
+
+    @property
+    def time(self) -> np.ndarray:
+        """Clock of the recording at the samples, shape (n,) [s]."""
+        return self.motion.time
+
+    def thinned(self, step: int) -> RecordingResidual:
+        """Every so many of the samples."""
+        m, rows = self.motion, slice(None, None, step)
+        motion = replace(m, time=m.time[rows], q=m.q[rows], v=m.v[rows], a=m.a[rows], load=m.load[rows], cache={})
+        return RecordingResidual(motion, self.rest[rows], self.counts[rows], self.index)
+
+
+def residual_by_recording(
+    problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect]
+) -> tuple[RecordingResidual, ...]:
+    """r = F(τ − τ_nominal − Σ τ_effect) of each recording, its segments joined in time."""
+    parts: dict[int, list[tuple[Segment, np.ndarray]]] = {}
+    for piece in pieces:
+        rest = problem.reduce(piece, piece.tau - torque_with(piece.motion(problem), effects))
+        parts.setdefault(piece.recording, []).append((piece, rest))
+    return tuple(_joined(problem, index, found) for index, found in parts.items())
+
+
+def _joined(problem: Problem, index: int, found: list[tuple[Segment, np.ndarray]]) -> RecordingResidual:
+    names = ("time", "q", "v", "a", "load")
+    time, q, v, a, load = (np.concatenate([getattr(p, n)[p.keep] for p, _ in found]) for n in names)
+    motion = Motion(
+        time, q, v, a, load, problem.slow, problem.nominal, None, None, found[0][0].origin, problem.straight
+    )
+    counts = np.concatenate([p.counts for p, _ in found])
+    return RecordingResidual(motion, np.concatenate([r for _, r in found]), counts, index)
+
+
+def left_by(problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect]) -> np.ndarray:
+    """r of all segments, zero where a sample is not valid, shape (n, dof) [N m]."""
+    return np.concatenate([_left(problem, p, p.motion(problem), effects) for p in pieces])
+
+
+def stacked(problem: Problem, pieces: Sequence[Segment]) -> tuple[np.ndarray, np.ndarray]:
+    """r = F(τ − τ_nominal) of all segments [N m] and which samples are valid, shape (n, dof) each."""
+    rest = np.concatenate([problem.residual(p) for p in pieces])
+    return rest, np.concatenate([p.counts for p in pieces])
+
+
+def power_of(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
+    """mean r_j² over the valid samples of a joint [N² m²]."""
+    return float(np.sum((residual[:, joint] * counts[:, joint]) ** 2) / max(1, counts[:, joint].sum()))
+
+
+def predicted_error(
+    problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect], measured_torque: bool = False
+) -> float:
+    """Σ_j mean r_j² / var τ_j: squared error that effects leave, in shares of each joint's variance, summed.
+
+    Args:
+        measured_torque: whether effects that follow from the measured torque may use it; a prediction has none.
+    """
+    rests = []
+    for piece in pieces:
+        motion = piece.motion(problem)
+        rests.append(_left(problem, piece, motion if measured_torque else replace(motion, recorded=None), effects))
+    moving = problem.scale > 1e-9 * np.max(problem.scale)
+    return float(np.sum(np.mean(np.concatenate(rests)[:, moving] ** 2, axis=0) / problem.scale[moving] ** 2))
+
+
+def _left(problem: Problem, piece: Segment, motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray:
+    return problem.reduce(piece, piece.tau - torque_with(motion, effects)) * piece.counts

@@ -1,0 +1,63 @@
+"""G_b = Σ_{t∈b} [X r]ᵀ[X r]: Gram matrices of blocks of time, whose size does not grow with the recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
+from lagnet.diagnosis.regression.library import Library
+
+BLOCK = 12.0  # length of a block, in periods of the bandwidth: long compared with the residual's correlation time
+MOST_BLOCKS = 150  # longer recordings get longer blocks
+MOST_SAMPLES = 250_000  # at full rate: of longer recordings, segments spread over them are used
+FOLDS = 6  # of cross-validation
+
+
+@dataclass(frozen=True, eq=False)
+class BlockGrams:
+    """G_b of each block b and joint.
+
+    Args:
+        joints: for each joint, shape (n_blocks, width + 1, width + 1); the residual is the last row and column.
+        counts: shape (n_blocks, dof), number of valid samples in each.
+        recording: shape (n_blocks,), which recording a block is of.
+    """
+
+    joints: tuple[np.ndarray, ...]
+    counts: np.ndarray
+    recording: np.ndarray
+
+    def total(self, joint: int) -> np.ndarray:
+        """Sum over blocks, shape (width + 1, width + 1)."""
+        return self.joints[joint].sum(axis=0)
+
+    def folds(self, joint: int) -> np.ndarray:
+        """Sums over interleaved groups of blocks, shape (FOLDS, width + 1, width + 1)."""
+        return np.stack([self.joints[joint][f::FOLDS].sum(axis=0) for f in range(FOLDS)])
+
+    def samples(self, joint: int) -> float:
+        """Number of valid samples of the joint."""
+        return float(self.counts[:, joint].sum())
+
+
+def collect_block_grams(problem: Problem, library: Library, pieces: tuple[Segment, ...]) -> BlockGrams:
+    """G_b of all blocks, summed segment by segment, so that only the columns of one segment are in memory.
+
+    Of more than `MOST_SAMPLES` samples, segments spread evenly over them are taken.
+    """
+    pieces = spread_evenly(pieces, MOST_SAMPLES)
+    total = sum(p.keep.size for p in pieces)
+    reduced_rate = total / max(1e-9, sum(np.ptp(p.time[p.keep]) for p in pieces if p.keep.size > 1))
+    length = max(int(BLOCK * reduced_rate / problem.bandwidth), total // MOST_BLOCKS, 8)
+    grams: list[list[np.ndarray]] = [[] for _ in range(problem.n_dof)]
+    counts, recordings = [], []
+    for piece in pieces:
+        blocks = np.array_split(np.arange(piece.keep.size), max(1, round(piece.keep.size / length)))
+        for joint, table in enumerate(library.tables(problem, piece)):
+            counted = table * piece.counts[:, [joint]]
+            grams[joint].extend(counted[b].T @ counted[b] for b in blocks)
+        counts.extend(piece.counts[b].sum(axis=0) for b in blocks)
+        recordings.extend([piece.recording] * len(blocks))
+    return BlockGrams(tuple(np.stack(g) for g in grams), np.array(counts, dtype=float), np.array(recordings))

@@ -1,0 +1,168 @@
+"""Weighted least squares of a selection of hypotheses, from block normal equations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lagnet.diagnosis.regression.block_gram import BlockGrams
+from lagnet.diagnosis.regression.library import Library
+from lagnet.diagnosis.regression.normal_equations import ridge_solve
+from lagnet.diagnosis.settings import DecisionLimits
+
+RIDGE = 1e-7  # of a column's own power: settles directions that the data leave open at zero
+MEMORY = (1.0, 60.0)  # least and most samples that one piece of independent evidence may take
+
+
+@dataclass(frozen=True, eq=False)
+class NormalEquations:
+    """Normal equations summed in the ways that the search needs.
+
+    Args:
+        library: the hypotheses.
+        grams: the blocks.
+        total: for each joint, the sum of all blocks.
+        folds: for each joint, the sums of interleaved groups of blocks.
+        samples: shape (dof,), samples that count.
+        limits: where the diagnosis decides.
+    """
+
+    library: Library
+    grams: BlockGrams
+    total: tuple[np.ndarray, ...]
+    folds: tuple[np.ndarray, ...]
+    samples: np.ndarray
+    limits: DecisionLimits = field(default_factory=DecisionLimits)
+
+    def columns(self, joint: int, selection: Iterable[int]) -> np.ndarray:
+        """Column numbers of the selected hypotheses that act on a joint."""
+        slots = self.library.slots[joint]
+        picked = [np.arange(slots[i].start, slots[i].stop) for i in selection if i in slots]
+        return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
+
+
+def sum_normal_equations(library: Library, grams: BlockGrams, limits: DecisionLimits | None = None) -> NormalEquations:
+    """Sums the blocks."""
+    joints = range(library.n_dof)
+    return NormalEquations(
+        library,
+        grams,
+        tuple(grams.total(j) for j in joints),
+        tuple(grams.folds(j) for j in joints),
+        np.maximum(grams.counts.sum(axis=0), 1.0),
+        limits or DecisionLimits(),
+    )
+
+
+def joint_loss(bench_total: np.ndarray, folds: np.ndarray, columns: np.ndarray) -> tuple[float, np.ndarray]:
+    """Squared error of a joint on blocks not used for the fit, and the coefficients from all blocks.
+
+    Args:
+        bench_total: shape (K + 1, K + 1), with the residual last.
+        folds: shape (FOLDS, K + 1, K + 1).
+        columns: numbers of the columns in use.
+    """
+    if not columns.size:
+        return float(bench_total[-1, -1]), np.zeros(0)
+    across = columns[:, None], columns[None, :]
+    inner, moment = folds[:, *across], folds[:, columns, -1]
+    grams = np.concatenate([bench_total[across][None] - inner, bench_total[across][None]])
+    moments = np.concatenate([bench_total[columns, -1][None] - moment, bench_total[columns, -1][None]])
+    solved = ridge_solve(grams, moments, RIDGE)  # without each fold in turn, and last with all
+    theta = solved[:-1]
+    error = folds[:, -1, -1].sum() - 2.0 * np.vdot(theta, moment)
+    error += np.vdot(theta, (inner @ theta[..., None])[..., 0])
+    return float(error), solved[-1]
+
+
+def take_off(gram: np.ndarray, columns: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """Normal equations after a known contribution is taken off the residual; batched over leading axes."""
+    out = gram.copy()
+    shift = gram[..., :, columns] @ theta
+    out[..., :, -1] -= shift
+    out[..., -1, :] -= shift
+    out[..., -1, -1] += np.einsum("...i,i->...", gram[..., columns, :][..., :, columns] @ theta, theta)
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Coefficients of a selection.
+
+    Args:
+        selection: indices of the hypotheses, in order.
+        coefficients: for each of them its coefficients.
+        sse: shape (dof,), squared error on unseen blocks, summed.
+    """
+
+    selection: tuple[int, ...]
+    coefficients: dict[int, np.ndarray]
+    sse: np.ndarray
+
+
+def fit_selection(equations: NormalEquations, selection: Sequence[int], sigma: np.ndarray, folds: bool = True) -> Fit:
+    """Fits all selected hypotheses at once, joints weighted by 1/σ², and judges each fold by a fit without it."""
+    order = tuple(selection)
+    widths = [equations.library.widths[i] for i in order]
+    starts = np.concatenate([[0], np.cumsum(widths)]).astype(int)
+    where = {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(order)}
+    gram, moment = assemble(equations, order, where, sigma, [t[None] for t in equations.total])
+    theta = ridge_solve(gram[0], moment[0], RIDGE) if order else np.zeros(0)
+    coefficients = {i: theta[where[i]] for i in order}
+    sse = _unseen_error(equations, order, where, sigma) if folds else np.zeros(equations.library.n_dof)
+    return Fit(order, coefficients, sse)
+
+
+def assemble(
+    equations: NormalEquations, order: Sequence[int], where: dict, sigma: np.ndarray, tables: Sequence[np.ndarray]
+):
+    """Normal equations of all joints together, shapes (B, K, K) and (B, K)."""
+    size = sum(equations.library.widths[i] for i in order)
+    gram = np.zeros((tables[0].shape[0], size, size))
+    moment = np.zeros((tables[0].shape[0], size))
+    for joint, table in enumerate(tables):
+        own = [i for i in order if i in equations.library.slots[joint]]
+        if not own:
+            continue
+        here, there = equations.columns(joint, own), np.concatenate([where[i] for i in own])
+        weight = 1.0 / sigma[joint] ** 2
+        gram[:, there[:, None], there[None, :]] += weight * table[:, here[:, None], here[None, :]]
+        moment[:, there] += weight * table[:, here, -1]
+    return gram, moment
+
+
+def _unseen_error(equations: NormalEquations, order: Sequence[int], where: dict, sigma: np.ndarray) -> np.ndarray:
+    rest = [t[None] - f for t, f in zip(equations.total, equations.folds, strict=True)]
+    error = np.array([f[:, -1, -1].sum() for f in equations.folds])
+    if not order:
+        return error
+    gram, moment = assemble(equations, order, where, sigma, rest)
+    theta = ridge_solve(gram, moment, RIDGE)
+    for joint, fold in enumerate(equations.folds):
+        own = [i for i in order if i in equations.library.slots[joint]]
+        if own:
+            here, there = equations.columns(joint, own), np.concatenate([where[i] for i in own])
+            t = theta[:, there]
+            error[joint] += np.einsum("fi,fij,fj->", t, fold[:, here[:, None], here[None, :]], t)
+            error[joint] -= 2.0 * np.sum(t * fold[:, here, -1])
+    return error
+
+
+def statistical_inefficiency(equations: NormalEquations, joint: int, columns: np.ndarray, theta: np.ndarray) -> float:
+    """Samples that make one piece of independent evidence: scatter of block scores over that of white residuals.
+
+    Residuals that hang together over time add up within a block, so that scores of blocks scatter more than
+    independent samples would let them.
+    """
+    table = equations.grams.joints[joint]
+    if not columns.size:
+        return 1.0
+    rest = take_off(table, columns, theta)
+    power = rest[:, -1, -1].sum() / equations.samples[joint]
+    scores = rest[:, columns, -1]
+    usual = power * equations.total[joint][columns, columns]
+    keep = usual > 0
+    ratios = np.sum(scores[:, keep] ** 2, axis=0) / usual[keep]
+    return float(np.clip(np.median(ratios), *MEMORY)) if keep.any() else 1.0

@@ -1,0 +1,164 @@
+"""F X_k(q, v, a, τ_nominal): the columns of each hypothesis that these recordings can show, low-passed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.effects.catalogue import CATALOGUE
+from lagnet.effects.effect import Effect
+from lagnet.effects.inertia.gravity_tilt import GravityTilt
+from lagnet.effects.motion import Motion
+from lagnet.models.corrected.model import NamedEffect, load_before
+from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, weight_in_each
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One effect at one joint (None: the whole arm) with the values of its nonlinear parameters."""
+
+    effect: str
+    joint: int | None
+    shape: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def law(self) -> Effect:
+        """The effect's class in the catalogue."""
+        return CATALOGUE[self.effect]
+
+    @property
+    def place(self) -> tuple[str, int | None]:
+        """Effect and joint, whatever the shape."""
+        return self.effect, self.joint
+
+
+@dataclass(frozen=True)
+class Abstention:
+    """An effect that these recordings do not excite, and why."""
+
+    effect: str
+    joint: int | None
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """The hypotheses, their abstentions, and where their columns stand.
+
+    Columns of joint j: those of its own hypotheses, then those that reach all joints, then the residual itself.
+
+    Args:
+        hypotheses: all of them; the index in this tuple names a hypothesis in a selection.
+        widths: number of columns of each.
+        n_dof: number of joints.
+        abstentions: what was left out.
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    widths: tuple[int, ...]
+    n_dof: int
+    abstentions: tuple[Abstention, ...]
+
+    @cached_property
+    def reaching(self) -> tuple[int, ...]:
+        """Indices of the arm-wide hypotheses: those that change the torque of other joints, too."""
+        return tuple(i for i, h in enumerate(self.hypotheses) if h.law.reaches_all)
+
+    @cached_property
+    def local(self) -> tuple[tuple[int, ...], ...]:
+        """For each joint the indices of the hypotheses that change its torque alone."""
+        own: list[list[int]] = [[] for _ in range(self.n_dof)]
+        for i, h in enumerate(self.hypotheses):
+            if h.joint is not None and not h.law.reaches_all:
+                own[h.joint].append(i)
+        return tuple(map(tuple, own))
+
+    @cached_property
+    def slots(self) -> tuple[dict[int, slice], ...]:
+        """For each joint, the columns of each hypothesis that acts on it."""
+        return tuple(self._slots(j) for j in range(self.n_dof))
+
+    def _slots(self, joint: int) -> dict[int, slice]:
+        found, at = {}, 0
+        for i in (*self.local[joint], *self.reaching):
+            found[i] = slice(at, at + self.widths[i])
+            at += self.widths[i]
+        return found
+
+    def width(self, joint: int) -> int:
+        """Number of columns of a joint, the residual not counted."""
+        return sum(self.widths[i] for i in (*self.local[joint], *self.reaching))
+
+    def tables(self, problem: Problem, piece: Segment) -> Iterator[np.ndarray]:
+        """[F X, r] of each joint on one segment, shape (len(keep), width + 1)."""
+        motion = piece.motion(problem)
+        residual = problem.residual(piece)
+        arm_wide = [problem.reduce(piece, self._columns(i, motion, problem.known)) for i in self.reaching]
+        for joint in range(self.n_dof):
+            own = [self._columns(i, motion, problem.known) for i in self.local[joint]]
+            near = problem.reduce(piece, np.column_stack(own)) if own else np.zeros((piece.keep.size, 0))
+            yield np.column_stack([near, *(f[:, joint] for f in arm_wide), residual[:, joint]])
+
+    def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
+        h = self.hypotheses[index]
+        columns = h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
+        if known and isinstance(h.law, GravityTilt):
+            changes = h.law.changes(np.asarray(motion.model.gravity, dtype=float), dict(h.shape))
+            if h.shape:
+                changes[:, 0] = 0.0  # bodies are seen in the field of a large tilt already
+            return columns + weight_in_each(motion, known, changes)
+        if known and h.effect in BODIES:
+            link = motion.n_dof - 1 if h.joint is None else h.joint
+            return columns + body_in_turned_field(motion, link, known)
+        return columns
+
+
+def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:
+    """The motion with the torque τ_nominal + Σ τ_body that a law acts on."""
+    if not known or law.stage == "body":
+        return motion
+    return motion.with_load(
+        motion.remembered(f"load before {law.stage}", lambda: load_before(motion, known, law.stage))
+    )
+
+
+def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
+    """Every effect of the catalogue at every joint, except those that the recorded motion does not excite."""
+    summary = problem.summary()
+    probe = _head(summary)
+    has_bodies = hasattr(problem.nominal, "link_regressor")
+    hypotheses: list[Hypothesis] = []
+    widths: list[int] = []
+    abstentions: list[Abstention] = []
+    for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
+        for joint in _places(effect, problem.n_dof):
+            seen = _as_seen(summary, problem.known, effect)
+            reason = _reason_against(effect, seen, joint, has_bodies)
+            shapes = () if reason else effect.shapes(seen, joint)
+            if reason:
+                abstentions.append(Abstention(effect.name, joint, reason))
+            for shape in shapes:
+                hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
+                widths.append(effect.columns(probe, joint, shape).shape[-1])
+    return Library(tuple(hypotheses), tuple(widths), problem.n_dof, tuple(abstentions))
+
+
+def _places(effect: Effect, n_dof: int) -> list[int | None]:
+    return [j for j in ((None,) if effect.whole_arm else range(n_dof)) if effect.exists_at(j)]
+
+
+def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodies: bool) -> str | None:
+    if effect.needs_bodies and not has_bodies:
+        return "the nominal model has no kinematics from which a body's torque could be computed"
+    return effect.excitation(motion, joint)
+
+
+def _head(motion: Motion, n: int = 40) -> Motion:
+    rows = slice(0, n)
+    time = np.arange(motion.time[rows].size, dtype=float) * 0.01
+    q, v, a, load = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
+    return Motion(time, q, v, a, load, motion.slow, motion.model, straight=motion.straight)

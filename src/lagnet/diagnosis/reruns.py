@@ -1,0 +1,150 @@
+"""Reruns of the pipeline: in a narrower band, on a shifted clock, and without the intervals that pass.
+
+- Impacts and resonances drown what holds below them: where much is unexplained, narrower bands are tried.
+- A torque that is held between samples acts, on average, half a sample later than its stamp, and a log may stamp the
+  torque of one control cycle beside the motion of the next. Such a shift is shared by all joints and says how the log
+  was made, not what an arm lacks. A shift that other joints deny stays what it is: a delay.
+- What happens for a while only is looked for after the persistent effects, which are then found anew without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.dry_friction import fit_sign_model
+from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
+from lagnet.diagnosis.problem.problem import Problem, blurred_speed
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.diagnosis.transients.detection import Scan, detect_events
+from lagnet.diagnosis.transients.separation import separate
+from lagnet.effects.catalogue import effect_named
+from lagnet.errors import DiagnosisError
+from lagnet.models.corrected.model import torque_with
+
+PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
+CLEARLY = 2.0  # times the noise that it must exceed
+FACTORS = (0.5, 0.25)  # of the bandwidth
+LEAST = 2.5  # [Hz]
+BETTER = np.log(3.0)  # by which the held-out errors of all joints together must fall: one joint's to a third
+HELD = 0.6  # of a sample: delays up to this may come from torques that are held, or stamped half a cycle off
+ALIKE = 0.25  # of the shift by which delays of single joints may differ from it
+SUSPECT = 2.0  # times the gain of the next best interval, from which the pipeline is run without the interval
+LOOKS = 3  # alternations between event intervals and persistent effects, at most
+
+
+def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
+    """The first run, or the one in a narrower band that predicts held-out torque much better below that band.
+
+    Args:
+        at: a run on the same recordings at a given bandwidth [Hz].
+    """
+    if not is_puzzled(first):
+        return first
+    tried = [first, *_narrower(first.fit.bandwidth, at)]
+    events = [s for one in tried for s in one.events]
+    errors = [_error(one, tried[-1], events) for one in tried]
+    best = int(np.argmin(errors))
+    return tried[best] if errors[best] < errors[0] - BETTER else first
+
+
+def is_puzzled(state: DiagnosisState) -> bool:
+    """Whether some joint has a large residual share, clearly above the noise."""
+    limits = (CLEARLY * state.noise) ** 2
+    left = zip(state.remainders, limits, strict=True)
+    return any(joint.above and joint.share > PUZZLING and joint.power > limit for joint, limit in left)
+
+
+def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[DiagnosisState]:
+    out = []
+    for band in (f * bandwidth for f in FACTORS):
+        if band < LEAST:
+            break
+        try:
+            out.append(at(band))
+        except DiagnosisError:  # recordings too short for so slow a filter
+            break
+    return out
+
+
+def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventInterval]) -> float:
+    """Σ_j ln max(mean r_j², σ_j²) on held-out samples, in the band of another run.
+
+    Event intervals that have no name in any run are not valid in all of them.
+    """
+    clean = set_aside(judge.problem, events)
+    problem = replace(clean, slow=state.problem.slow, straight=state.problem.straight, held=state.problem.held)
+    rest, counts = [], []
+    for piece in problem.holdout:
+        motion = replace(piece.motion(problem), recorded=None)
+        rest.append(problem.reduce(piece, piece.tau - torque_with(motion, state.effects)) * piece.counts)
+        counts.append(piece.counts)
+    power = np.sum(np.concatenate(rest) ** 2, axis=0) / np.maximum(1, np.concatenate(counts).sum(axis=0))
+    return float(np.sum(np.log(np.maximum(power, np.maximum(judge.noise, 1e-12) ** 2))))
+
+
+def on_one_clock(first: DiagnosisState, shifted: Callable[[float], DiagnosisState]) -> DiagnosisState:
+    """The first run, or the one with torques read at shifted times where all joints share a shift within a sample.
+
+    Args:
+        shifted: a run on the same recordings, torques read that much later [s].
+    """
+    delays = {e.joint: e.values["T"] for e in first.effects if effect_named(e.effect).is_delay and e.joint is not None}
+    small = [t for t in delays.values() if abs(t) <= HELD / first.fit.rate]
+    if not small:
+        return first
+    shift = float(np.median(small))
+    if any(abs(t - shift) > ALIKE * abs(shift) for t in small):
+        return first
+    second = shifted(shift)
+    others = [j for j in range(first.problem.n_dof) if j not in delays]
+    asked = first.problem.limits.complexity_penalty * (
+        2 - len(small)
+    )  # one shift in the place of many delays is worth what each of them cost
+    return second if not others or _clock_gain(first, second, others) > asked else first
+
+
+def _clock_gain(first: DiagnosisState, second: DiagnosisState, joints: list[int]) -> float:
+    """½ Σ_j n_j / g_j ln(E_first / E_second) [nats] on held-out motion, over joints without a delay."""
+    samples = first.holdout_equations.samples / first.selection.scales.inefficiency
+    before, after = (
+        np.maximum([left.power for left in one.remainders], np.maximum(first.noise, 1e-12) ** 2 / 4)
+        for one in (first, second)
+    )
+    return float(0.5 * np.sum((samples * np.log(before / after))[joints]))
+
+
+def settle_transients(state: DiagnosisState, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
+    """The state as it is where there is no event; else persistent effects without the events, and transients apart.
+
+    Args:
+        state: of a run on all samples.
+        again: another run on the same recordings with some samples set aside.
+    """
+    problem = state.problem
+    scan = detect_events(problem, state.refit.effects, state.noise, SUSPECT)
+    events, clean = scan.events, state
+    for _ in range(LOOKS):
+        if not events:
+            return state
+        masked = set_aside(problem, events)
+        if too_much(problem, masked):
+            return replace(state, events=events)
+        clean = again(fit_sign_model(replace(masked, slow=blurred_speed(state.fit), straight=None, held=None)))
+        whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
+        scan = detect_events(whole, clean.refit.effects, state.noise)
+        slack = SMEAR / problem.bandwidth
+        if all(any(old.covers(new, slack) for old in events) for new in scan.events):
+            break
+        events = scan.events
+    found = _separated(replace(clean, problem=whole), scan) if scan.events else state
+    return found if found.transients or found.events else state
+
+
+def _separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
+    power = np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power)
+    sigma = np.sqrt(power / clean.equations.samples)
+    parts = separate(clean.problem, clean.refit.effects, sigma, scan)
+    return replace(clean, refit=parts.refit, transients=parts.transients, events=parts.unnamed)

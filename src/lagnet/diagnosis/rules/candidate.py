@@ -1,0 +1,109 @@
+"""A selection of effects with everything that a rule may ask of it, each quantity computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from lagnet.diagnosis.estimation.refit import Refit, refit
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.problem.residuals import left_by
+from lagnet.diagnosis.regression.cross_validation import NormalEquations
+from lagnet.diagnosis.regression.library import Library
+from lagnet.diagnosis.selection.arm_search import Selection, refit_selection
+from lagnet.diagnosis.selection.holdout_gain import HoldoutGain, holdout_gains
+from lagnet.diagnosis.selection.named_effects import named_effects
+from lagnet.diagnosis.settings import DecisionLimits
+from lagnet.models.corrected.model import NamedEffect
+
+Part = Literal["fit", "holdout"]
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A selection of hypotheses on the recordings of one diagnosis.
+
+    Args:
+        problem: recordings and nominal model.
+        equations, holdout_equations: normal equations of the fitted and of the held-out recordings.
+        selection: the hypotheses, with the coefficients of the linear fit.
+        noise: shape (dof,), noise floor [N m].
+        seed: of everything random.
+        residuals: r by part and effects, computed once; shared by all candidates of one diagnosis.
+    """
+
+    problem: Problem
+    equations: NormalEquations
+    holdout_equations: NormalEquations
+    selection: Selection
+    noise: np.ndarray
+    seed: int
+    residuals: dict = field(default_factory=dict, repr=False)
+
+    @property
+    def limits(self) -> DecisionLimits:
+        """Where the diagnosis decides."""
+        return self.problem.limits
+
+    @property
+    def library(self) -> Library:
+        """All hypotheses."""
+        return self.equations.library
+
+    @property
+    def indices(self) -> tuple[int, ...]:
+        """Numbers of the selected hypotheses in the library, in the order of `effects`."""
+        return self.selection.indices
+
+    @cached_property
+    def sigma(self) -> np.ndarray:
+        """σ_j: root mean square residual of the linear fit at each joint, at least the noise, shape (dof,) [N m]."""
+        return self.selection.sigma(self.equations)
+
+    @cached_property
+    def refit(self) -> Refit:
+        """The selection fitted by the exact laws, all parameters together."""
+        return refit(self.problem, named_effects(self.library, self.selection), self.sigma)
+
+    @property
+    def effects(self) -> tuple[NamedEffect, ...]:
+        """The selected effects with the parameters of the refit."""
+        return self.refit.effects
+
+    @cached_property
+    def holdout_gain(self) -> dict[int, HoldoutGain]:
+        """Held-out nMSE without and with each selected hypothesis, the others refitted."""
+        return holdout_gains(self.equations, self.holdout_equations, self.selection, self.problem.scale, self.sigma)
+
+    def segments(self, part: Part) -> tuple[Segment, ...]:
+        """The fitted or the held-out segments."""
+        return self.problem.fit if part == "fit" else self.problem.holdout
+
+    def residual(self, part: Part, effects: Sequence[NamedEffect] | None = None) -> np.ndarray:
+        """r = F(τ − τ_nominal − Σ τ_effect), zero where a sample is not valid, shape (n, dof) [N m].
+
+        Args:
+            effects: None: the selected ones, refitted.
+        """
+        chosen = self.effects if effects is None else tuple(effects)
+        key = part, tuple(e.key for e in chosen)
+        if key not in self.residuals:
+            self.residuals[key] = left_by(self.problem, self.segments(part), chosen)
+        return self.residuals[key]
+
+    def torque(self, part: Part, effect: NamedEffect) -> np.ndarray:
+        """F τ_effect of one effect alone, zero where a sample is not valid, shape (n, dof) [N m]."""
+        return self.residual(part, ()) - self.residual(part, (effect,))
+
+    def without(self, *indices: int, instead: Sequence[int] = ()) -> Candidate:
+        """The candidate without some hypotheses, with others in the place of the first, fitted again."""
+        found, first = self.selection, {*indices[:1]}
+        arm_wide = tuple(i for i in found.arm_wide if i not in indices)
+        local = tuple(
+            (*(i for i in own if i not in indices), *(instead if first & {*own} else ())) for own in found.local
+        )
+        return replace(self, selection=refit_selection(self.equations, replace(found, arm_wide=arm_wide, local=local)))

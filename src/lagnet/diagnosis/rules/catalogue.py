@@ -1,0 +1,28 @@
+"""Every rule that a named effect must pass, in their order. A new rule is one file and one line here."""
+
+from __future__ import annotations
+
+from lagnet.diagnosis.rules.canonical_form import CanonicalForm
+from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
+from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
+from lagnet.diagnosis.rules.lack_of_fit import LackOfFit
+from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
+from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
+from lagnet.diagnosis.rules.no_holdout_gain import NoHoldoutGain
+from lagnet.diagnosis.rules.not_significant import NotSignificant
+from lagnet.diagnosis.rules.reversal_delay import ReversalDelay
+from lagnet.diagnosis.rules.rule import RejectionRule
+from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
+
+RULES: tuple[RejectionRule, ...] = (
+    CollinearWithBody(),
+    CanonicalForm(),
+    NoHoldoutGain(),
+    NegligibleTorque(),
+    MeasuredTorqueLeakage(),
+    LackOfFit(),
+    SurrogateTerms(),
+    ImpossibleDensity(),
+    ReversalDelay(),
+    NotSignificant(),
+)

@@ -1,0 +1,168 @@
+"""Lack of fit: effects that explain less of a joint than all effects leave unexplained there.
+
+A wrong name for unlisted physics is worse than none. An effect is tested at the joints where it helps, and stays if it
+passes at one of them: another joint may have physics of its own. A residual on held-out motion alone rejects no effect,
+unless it can be predicted from the fitted motion. An effect smaller than the known error of the nominal model cannot be
+distinguished from it; one that may be the error of a learned model stays only if it explains many times the residual.
+At a joint whose held-out error all effects together make larger than that of the nominal model, effects with a torque
+larger than the mismatch are rejected, since they cancel each other on the fitted motion alone; an arm-wide effect that
+explains another joint stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+
+from lagnet.diagnosis.nominal.learned_error import Name, may_be_its_error, was_learned
+from lagnet.diagnosis.rules.candidate import Candidate, Part
+from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
+from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
+from lagnet.diagnosis.unexplained.predictability import predictability_of, signals_of
+from lagnet.diagnosis.unexplained.remainder import every_second_part
+
+Shares = dict[int, float]
+"""By joint, a share of its mismatch."""
+
+
+@final
+@dataclass(frozen=True)
+class LackOfFit(RejectionRule):
+    """Share of a joint's mismatch that the effect explains, against the share that all effects leave unexplained.
+
+    Args:
+        little: residual share of a joint's mismatch, up to which no effect is rejected: real arms always have some.
+        much: residual share, from which on its predictability is tested.
+        predictable: share of the residual that a flexible model predicts, from which on it is physics, not disturbance.
+        stands: an effect stays if it alone explains this many times the predictable residual.
+        most_left: residual share at a joint that still counts as explained by an arm-wide effect.
+        worse: held-out error over the nominal one, from which the effects together harm a joint.
+        outgrows: share of the known error of the nominal model that an effect must explain.
+    """
+
+    name: ClassVar[str] = "lack_of_fit"
+    statement: ClassVar[str] = "an effect explains more of a joint than all effects together leave unexplained there"
+    source: ClassVar[str] = ""
+    together: ClassVar[bool] = True
+
+    little: float = 0.01
+    much: float = 0.05
+    predictable: float = 0.3
+    stands: float = 10.0
+    most_left: float = 0.2
+    worse: float = 1.5
+    outgrows: float = 0.5
+
+    def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
+        problem, effects = candidate.problem, candidate.effects
+        harmed = self._harmed(candidate)
+        held, fitted = (left_shares(candidate, part) for part in ("holdout", "fit"))
+        needed = self._needed(candidate, held, fitted)
+        doubtful = may_be_its_error(problem, effects)
+        if not needed and not harmed and not doubtful and problem.missed is None:
+            return ()
+        least = np.maximum(self._ignored(candidate), [needed.get(j, 0.0) for j in range(problem.n_dof)])
+        asked = (self._asked(candidate, i, least, held, fitted, harmed, doubtful) for i in candidate.indices)
+        return tuple(r for r in asked if r is not None)
+
+    def _needed(self, candidate: Candidate, held: Shares, fitted: Shares) -> Shares:
+        """By joint, the share of its mismatch that an effect must explain there."""
+        both = {j: min(s, fitted.get(j, 0.0)) for j, s in held.items()}
+        needed = {j: s for j, s in both.items() if s > self.little}
+        if not was_learned(candidate.problem.nominal):  # the error of a network is a function of the arm's state, too
+            much = {j: s for j, s in held.items() if s > self.much}
+            needed |= {j: self.stands * s for j, s in self._predictable(candidate, much).items()}
+        return needed
+
+    def _asked(
+        self,
+        candidate: Candidate,
+        index: int,
+        least: np.ndarray,
+        held: Shares,
+        fitted: Shares,
+        harmed: dict[int, list[Name]],
+        doubtful: frozenset[Name],
+    ) -> Rejection | None:
+        """A rejection of one effect, or None where it may stay."""
+        h, part = candidate.library.hypotheses[index], candidate.holdout_gain[index]
+        at = max(part.at_joints, key=lambda j: part.shares[j] - least[j])
+        share, joint = float(part.shares[at]), candidate.problem.joints[at]
+        if not any(part.shares[j] >= least[j] for j in part.at_joints):
+            detail = f"it explains {100 * share:.3g} % of {joint}, where more than {100 * least[at]:.3g} % is asked for"
+            return self.rejection(candidate, index, share, float(least[at]), detail)
+        if h.place in doubtful and not outshines(part, self.stands, held, fitted):
+            detail = (
+                f"it may be the error of the learned model: at {joint} it explains less than ten times what is left"
+            )
+            return self.rejection(
+                candidate, index, share, self.stands * max(held.get(at, 0.0), fitted.get(at, 0.0)), detail
+            )
+        if any(h.place in names for names in harmed.values()) and not self._stands_elsewhere(
+            h.law.reaches_all, part, {*harmed}, held
+        ):
+            detail = "with it the held-out torque of a joint is predicted worse than by the nominal model"
+            return self.rejection(candidate, index, 1.0, self.worse, detail)
+        return None
+
+    def _stands_elsewhere(self, arm_wide: bool, part: HoldoutGain, harmed: set[int], held: Shares) -> bool:
+        """Whether an arm-wide effect alone explains a joint that is not harmed: harm may come of another's physics."""
+        explained = (j for j in part.at_joints if j not in harmed and held.get(j, 0.0) < self.most_left)
+        return arm_wide and any(part.shares[j] > 1.0 - self.most_left for j in explained)
+
+    def _ignored(self, candidate: Candidate) -> np.ndarray:
+        """Share of each joint's held-out mismatch that may be the nominal model's own known error, shape (dof,)."""
+        missed = candidate.problem.missed
+        if missed is None:
+            return np.zeros(candidate.problem.n_dof)
+        return self.outgrows * missed**2 / np.maximum(_power(candidate.residual("holdout", ())), 1e-300)
+
+    def _harmed(self, candidate: Candidate) -> dict[int, list[Name]]:
+        """Joints that the effects make worse on held-out motion, with those whose torque there exceeds the mismatch."""
+        noise = candidate.noise
+        before, after = (_power(candidate.residual("holdout", e)) for e in ((), None))
+        worse = np.flatnonzero(after > self.worse * np.maximum(before, noise**2))
+        if not worse.size:
+            return {}
+        alone = {(e.effect, e.joint): _power(candidate.torque("holdout", e)) for e in candidate.effects}
+        largest = {int(j): max(p[j] for p in alone.values()) for j in worse}
+        limits = {j: min(max(before[j], noise[j] ** 2), largest[j]) for j in largest}
+        return {j: [name for name, power in alone.items() if power[j] >= limits[j]] for j in largest}
+
+    def _predictable(self, candidate: Candidate, shares: Shares) -> Shares:
+        """Those of the joints whose residual is predictable from the state, held out or between parts of the fit."""
+        return {j: s for j, s in shares.items() if any(x > self.predictable for x in _predicted(candidate, j))}
+
+
+def outshines(part: HoldoutGain, stands: float, *left: Shares) -> bool:
+    """Whether an effect explains many times the residual at its strongest joint, both in the fit and held out."""
+    most = max(part.at_joints, key=lambda j: part.shares[j])
+    return bool(part.shares[most] >= stands * max(shares.get(most, 0.0) for shares in left))
+
+
+def left_shares(candidate: Candidate, part: Part) -> Shares:
+    """Joints with a residual above the noise, and (mean r² − σ²) / (mean r_nominal² − σ²) of each."""
+    if not candidate.effects:
+        return {}
+    power = candidate.noise**2
+    before, after = (_power(candidate.residual(part, e)) - power for e in ((), None))
+    above = (before > 0) & (after > (candidate.limits.above_noise**2 - 1.0) * power)
+    return {int(j): float(after[j] / before[j]) for j in np.flatnonzero(above)}
+
+
+def _predicted(candidate: Candidate, joint: int) -> Iterator[float]:
+    """Predictable shares of a joint's residual: held out, and in every second part of the fit."""
+    problem, seed = candidate.problem, candidate.seed
+    seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
+    rest, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
+    valid = np.concatenate([p.counts for p in problem.fit])[:, joint]
+    yield predictability_of(seen, rest, valid, fresh, test, seed).share
+    one, other = every_second_part(len(valid))
+    yield predictability_of(seen.only(one), rest[one], valid[one], seen.only(other), rest[other], seed).share
+
+
+def _power(x: np.ndarray) -> np.ndarray:
+    return np.mean(x**2, axis=0)

@@ -1,0 +1,67 @@
+"""Effects whose torque, fitted by the exact law, is too small to be claimed or not significantly different from 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+
+from lagnet.diagnosis.estimation.gauss_newton import spread
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.model import NamedEffect, torque_with
+
+UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of its absence: it goes before all others
+
+
+@final
+@dataclass(frozen=True)
+class NegligibleTorque(RejectionRule):
+    """Power of the effect's torque, over max(t² var τ, r mean r²), exceeds one at some joint: t and r are shared."""
+
+    name: ClassVar[str] = "negligible_torque"
+    statement: ClassVar[str] = (
+        "the torque of the effect is large enough to be claimed, and its interval leaves out zero"
+    )
+    source: ClassVar[str] = ""
+    after_each_fit: ClassVar[bool] = True
+
+    def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
+        sizes = self.sizes(candidate.problem, candidate.effects)
+        undetermined = [
+            not effect_named(e.effect).is_determined(intervals)
+            for e, intervals in zip(candidate.effects, candidate.refit.intervals, strict=True)
+        ]
+        ranked = [s * UNDETERMINED if u else s for s, u in zip(sizes, undetermined, strict=True)]
+        small = sorted((n for n, size in enumerate(ranked) if size < 1.0), key=lambda n: ranked[n])
+        return tuple(self._rejection(candidate, n, sizes[n], undetermined[n]) for n in small)
+
+    def _rejection(self, candidate: Candidate, n: int, size: float, undetermined: bool) -> Rejection:
+        detail = f"the power of its torque is {size:.3g} times the least that is claimed"
+        detail = "its 95 % interval holds the value at which it would be absent" if undetermined else detail
+        return self.rejection(candidate, candidate.indices[n], size, 1.0, detail)
+
+    @staticmethod
+    def sizes(problem: Problem, effects: Sequence[NamedEffect]) -> list[float]:
+        """Power of each effect's torque over the least that may be claimed, at the joint where it is largest."""
+        pieces = spread(problem.fit)
+        motions = [p.motion(problem) for p in pieces]
+        together = [torque_with(m, effects) for m in motions]
+        nominal = _mean_square([problem.residual(p) for p in pieces])
+        limits = problem.limits
+        least = np.maximum(limits.least_torque**2 * problem.scale**2, limits.least_of_residual * nominal)
+        out = []
+        for n in range(len(effects)):
+            rest = (*effects[:n], *effects[n + 1 :])
+            alone = zip(pieces, motions, together, strict=True)
+            parts = [problem.reduce(p, t - torque_with(m, rest)) for p, m, t in alone]
+            out.append(float(np.max(_mean_square(parts) / least)))
+        return out
+
+
+def _mean_square(parts: list[np.ndarray]) -> np.ndarray:
+    return np.mean(np.concatenate(parts) ** 2, axis=0)

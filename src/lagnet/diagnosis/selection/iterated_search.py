@@ -1,0 +1,91 @@
+"""Selection repeated with columns X_k(τ_nominal + Σ τ_body), where bodies that were found change the joint torque.
+
+A gain, a delay or a limit acts on the whole torque at the sensor, a payload's included, and so does load-dependent
+friction. Their columns follow from the nominal torque at first. Where bodies that were found change the torque of a
+joint that has a residual above noise, the selection is repeated with columns that follow from the changed torque.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.nominal.mounting import mounting_of
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.regression.block_gram import collect_block_grams
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
+from lagnet.diagnosis.regression.library import Library, build_library
+from lagnet.diagnosis.selection.arm_search import Selection, search_arm
+from lagnet.diagnosis.selection.named_effects import named_effects
+from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.model import NamedEffect, load_before
+
+ROUNDS = 3  # at most; each starts from the torque that the one before found
+CHANGED = 0.02  # of a joint's rms torque: a smaller change does not alter the columns
+LEFT = 2.0  # times the noise power: a joint with a smaller residual needs no further effect
+
+
+def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquations, Selection]:
+    """The best selection, its normal equations, and the problem with the bodies that its columns follow from.
+
+    Args:
+        problem: just posed.
+        noise: shape (dof,), noise floor [N m].
+    """
+    problem = replace(problem, known=mounting_of(problem))
+    equations, found = _search_once(problem, noise)
+    for _ in range(ROUNDS):
+        known = _known(equations.library, found)
+        if not _is_news(problem, known, found.fit.sse > LEFT * equations.samples * noise**2):
+            break
+        problem, last = replace(problem, known=known), (equations.library, found)
+        equations, found = _search_once(problem, noise, last)
+    return problem, equations, found
+
+
+def _search_once(
+    problem: Problem, noise: np.ndarray, last: tuple[Library, Selection] | None = None
+) -> tuple[NormalEquations, Selection]:
+    equations, found = _search_among(problem, build_library(problem), noise, last)
+    wider = proposals_from_residual(problem, equations, found)
+    return (equations, found) if wider is None else _search_among(problem, wider, noise, last)
+
+
+def _search_among(
+    problem: Problem, library: Library, noise: np.ndarray, last: tuple[Library, Selection] | None
+) -> tuple[NormalEquations, Selection]:
+    equations = sum_normal_equations(library, collect_block_grams(problem, library, problem.fit), problem.limits)
+    starts = (None,) if last is None or not last[1].arm_wide else (None, _carried_over(*last, library))
+    return equations, search_arm(equations, equations.samples * noise**2, equations.samples * problem.scale**2, starts)
+
+
+def _carried_over(library: Library, found: Selection, to: Library) -> Selection:
+    """A selection in the indices of another library, without hypotheses that are not in it."""
+    index = {(h.place, h.shape): i for i, h in enumerate(to.hypotheses)}
+
+    def kept(chosen: tuple[int, ...]) -> tuple[int, ...]:
+        places = ((h.place, h.shape) for h in (library.hypotheses[i] for i in chosen))
+        return tuple(index[p] for p in places if p in index)
+
+    return replace(found, arm_wide=kept(found.arm_wide), local=tuple(kept(own) for own in found.local))
+
+
+def _known(library: Library, found: Selection) -> tuple[NamedEffect, ...]:
+    """Arm-wide bodies that were found: they also load joints where their torque alone does not differ from a gain's.
+
+    Effects of one joint are omitted: a column of their torque would be the effect itself, with one parameter less.
+    """
+    effects = ((e, effect_named(e.effect)) for e in named_effects(library, found))
+    return tuple(e for e, law in effects if law.stage == "body" and law.reaches_all and law.instantaneous)
+
+
+def _is_news(problem: Problem, known: tuple[NamedEffect, ...], left: np.ndarray) -> bool:
+    """Whether the torque of some joint with a residual above noise differs from that which the columns follow from."""
+    if not left.any() or not (known or problem.known):
+        return False
+    motion = problem.summary()
+    before, now = (load_before(motion, effects, "signal") for effects in (problem.known, known))
+    change = np.mean((now - before) ** 2, axis=0)
+    return bool(np.any(left & (change > CHANGED**2 * np.mean(motion.load**2, axis=0))))

@@ -1,0 +1,221 @@
+"""argmax_S −(n / 2g) ln E(S) − Σ_k penalty_k: forward selection of one joint's hypotheses by cross-validation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, joint_loss, statistical_inefficiency, take_off
+from lagnet.diagnosis.settings import DecisionLimits
+
+ROUNDS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class JointView:
+    """Normal equations of one joint after the contributions of arm-wide hypotheses are subtracted.
+
+    Args:
+        bench: the workbench.
+        joint: index.
+        total, folds: normal equations with the residual last.
+        inefficiency: samples that make one independent piece of evidence.
+        noise_power: squared error that noise alone would leave.
+        torque_power: squared torque of the joint, summed over samples.
+    """
+
+    equations: NormalEquations
+    joint: int
+    total: np.ndarray
+    folds: np.ndarray
+    inefficiency: float
+    noise_power: float
+    torque_power: float
+    known: dict[tuple[int, ...], float] = field(default_factory=dict)
+
+    @property
+    def limits(self) -> DecisionLimits:
+        """Where the diagnosis decides."""
+        return self.equations.limits
+
+    def loss(self, selection: Sequence[int]) -> tuple[float, np.ndarray]:
+        """E(S) on blocks left out of the fit [N² m²], and θ of all blocks."""
+        return joint_loss(self.total, self.folds, self.equations.columns(self.joint, selection))
+
+    def score(self, selection: Sequence[int]) -> float:
+        """log P(S) [nats]; −∞ where a coefficient breaks its physical bounds."""
+        key = tuple(sorted(selection))
+        if key not in self.known:
+            self.known[key] = self._score(key)
+        return self.known[key]
+
+    def _score(self, selection: Sequence[int]) -> float:
+        error, theta = self.loss(selection)
+        if not self.feasible(selection, theta):
+            return -np.inf
+        floor = max(error, 1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
+        evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
+        return evidence - sum(self.limits.penalty(self.equations.library.widths[i], self._shaped(i)) for i in selection)
+
+    def feasible(self, selection: Sequence[int], theta: np.ndarray) -> bool:
+        """Whether all coefficients lie inside their bounds."""
+        at = 0
+        for i in selection:
+            width = self.equations.library.widths[i]
+            h = self.equations.library.hypotheses[i]
+            lower, upper = h.law.bounds(dict(h.shape))
+            part = theta[at : at + width]
+            if np.any(part < lower) or np.any(part > upper):
+                return False
+            at += width
+        return True
+
+    def matters(self, selection: Sequence[int], index: int) -> bool:
+        """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
+        without, _ = self.loss([i for i in selection if i != index])
+        with_it, _ = self.loss(selection)
+        gain = without - with_it
+        least_torque = self.limits.least_torque**2 * self.torque_power
+        return gain > max(self.limits.least_share * without, least_torque, self.least_gain)
+
+    @property
+    def least_gain(self) -> float:
+        """r E_nominal: squared error that an effect must explain to be tested beside larger ones [N² m²]."""
+        return self.limits.least_of_residual * float(self.total[-1, -1])
+
+    def _shaped(self, index: int) -> int:
+        return len(self.equations.library.hypotheses[index].shape)
+
+
+def view_joint(
+    equations: NormalEquations,
+    joint: int,
+    taken: dict[int, np.ndarray],
+    memory: float,
+    noise_power: float,
+    torque_power: float,
+) -> JointView:
+    """Normal equations of a joint after the known contributions of arm-wide hypotheses are subtracted."""
+    total, folds = equations.total[joint], equations.folds[joint]
+    for index, theta in taken.items():
+        columns = equations.columns(joint, [index])
+        total, folds = take_off(total, columns, theta), take_off(folds, columns, theta)
+    return JointView(equations, joint, total, folds, memory, noise_power, torque_power)
+
+
+def search_joint(view: JointView, warm: tuple[int, ...] = ()) -> tuple[int, ...]:
+    """The best selection found from an empty start, a rich one and a given one."""
+    starts = {(), rich_start(view), warm}
+    found = [improve(view, s) for s in sorted(starts)]
+    return max(found, key=lambda s: view.score(s))
+
+
+def rich_start(view: JointView) -> tuple[int, ...]:
+    """A start with every plain hypothesis that is feasible beside the others; superfluous ones are then dropped."""
+    library = view.equations.library
+    selection: tuple[int, ...] = ()
+    plain = [i for i in library.local[view.joint] if not library.hypotheses[i].shape]
+    order = sorted(plain, key=lambda i: view.loss([i])[0])
+    for i in order:
+        if compatible(view, selection, i) and np.isfinite(view.score((*selection, i))):
+            selection = (*selection, i)
+    return selection
+
+
+def improve(view: JointView, start: tuple[int, ...]) -> tuple[int, ...]:
+    """Adds, drops and exchanges hypotheses while log P grows."""
+    selection, score = start, view.score(start)
+    for _ in range(ROUNDS):
+        for moves in (plain_moves, exchanges):  # exchanges are many: only where nothing else helps
+            found = [(view.score(s), s) for s in moves(view, selection)]
+            best_score, best = max(found, key=lambda m: m[0], default=(-np.inf, selection))
+            if best_score > score + 1e-9:
+                selection, score = best, best_score
+                break
+        else:
+            break
+    return simplify(view, drop_immaterial(view, selection))
+
+
+def simplify(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
+    """Replaces a law by its special case wherever the law hardly lowers the squared error compared with it."""
+    library = view.equations.library
+    for i in selection:
+        for name in library.hypotheses[i].law.contains:
+            simple = [k for k in library.local[view.joint] if library.hypotheses[k].effect == name]
+            if not simple or simple[0] in selection:
+                continue
+            other = tuple(simple[0] if k == i else k for k in selection)
+            superfluous = not gains_over(view, selection, i, other) or _at_edge(view, i)
+            if superfluous and np.isfinite(view.score(other)):
+                return simplify(view, other)
+    return selection
+
+
+def gains_over(view: JointView, selection: Sequence[int], index: int, other: Sequence[int]) -> bool:
+    """E(special case) − E(law) ≥ max(s E, c · explained): whether a law gains enough over its special case."""
+    before, after = view.loss(selection)[0], view.loss(other)[0]
+    explained = view.loss([k for k in selection if k != index])[0] - before
+    limits = view.limits
+    return after - before >= max(limits.least_share * after, limits.least_over_special_case * explained)
+
+
+def _at_edge(view: JointView, index: int) -> bool:
+    """Whether a law stands at the least value of its shape that was tried: it may be no more than its special case.
+
+    Additional friction close to standstill, for instance, cannot be distinguished there from a blurred sign of v.
+    """
+    library = view.equations.library
+    own = library.hypotheses[index]
+    tried = [library.hypotheses[k].shape for k in library.local[view.joint] if library.hypotheses[k].place == own.place]
+    return len(tried) > 1 and own.shape == min(tried)
+
+
+def drop_immaterial(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
+    """Drops effects that are too small to be claimed, the smallest first."""
+    while True:
+        idle = [i for i in selection if not view.matters(selection, i)]
+        if not idle:
+            return selection
+        losses = {i: view.loss([k for k in selection if k != i])[0] for i in idle}
+        worst = min(losses, key=lambda i: losses[i])
+        selection = tuple(i for i in selection if i != worst)
+
+
+def plain_moves(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Selections with one hypothesis dropped or added."""
+    dropped = [tuple(k for k in selection if k != i) for i in selection]
+    return dropped + _with_one_more(view, selection, selection)
+
+
+def exchanges(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Selections with one hypothesis in the place of another."""
+    dropped = [tuple(k for k in selection if k != i) for i in selection]
+    return [other for base in dropped for other in _with_one_more(view, base, selection)]
+
+
+def _with_one_more(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]) -> list[tuple[int, ...]]:
+    local = view.equations.library.local[view.joint]
+    return [(*base, i) for i in local if i not in tried and compatible(view, base, i)]
+
+
+def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
+    """Whether a hypothesis may stand beside the others: not twice the same, nor a law beside its special case."""
+    library = view.equations.library
+    new = library.hypotheses[index]
+    for i in selection:
+        old = library.hypotheses[i]
+        if old.place == new.place or old.effect in new.law.contains or new.effect in old.law.contains:
+            return False
+        if set(old.law.contains) & set(new.law.contains):
+            return False
+    return True
+
+
+def joint_inefficiency(view: JointView, selection: Sequence[int]) -> float:
+    """g, statistical inefficiency of a selection's residual [samples]."""
+    columns = view.equations.columns(view.joint, selection)
+    _, theta = view.loss(selection)
+    return statistical_inefficiency(view.equations, view.joint, columns, theta)

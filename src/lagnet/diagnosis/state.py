@@ -1,0 +1,97 @@
+"""The results of all steps of one diagnosis, as a value: the verdict, the report and the files are made from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lagnet.diagnosis.estimation.refit import Refit
+from lagnet.diagnosis.identifiability.ambiguity import AmbiguousCause
+from lagnet.diagnosis.identifiability.rivals import Comparison
+from lagnet.diagnosis.problem.intervals import EventInterval, set_aside
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.regression.cross_validation import NormalEquations
+from lagnet.diagnosis.regression.library import Library
+from lagnet.diagnosis.rules.rule import Rejection
+from lagnet.diagnosis.selection.arm_search import Selection
+from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
+from lagnet.diagnosis.transients.transient import Transient
+from lagnet.diagnosis.unexplained.friction_drift import Drift, find_drifts
+from lagnet.diagnosis.unexplained.remainder import JointRemainder, Remainder, joint_remainders, remainder_of
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.recordings.conditioning.condition import Conditioned
+
+
+@dataclass(frozen=True, eq=False)
+class DiagnosisState:
+    """The results of one run of the pipeline.
+
+    Args:
+        problem: recordings and nominal model as compared.
+        fit, holdout: the recordings on an even clock.
+        noise: shape (dof,), noise floor [N m].
+        library: the hypotheses.
+        equations, holdout_equations: normal equations of the fitted and of the held-out recordings.
+        selection: the selected hypotheses.
+        comparisons: each of them against its rivals.
+        holdout_gain: what each does for held-out recordings.
+        refit: the persistent effects with parameters and intervals.
+        seed: of everything random.
+        rejected: effects that were considered and not named.
+        transients: effects that act for a while only.
+        events: intervals in which something without a name acts.
+        ambiguous: causes that too many names explain equally.
+    """
+
+    problem: Problem
+    fit: Conditioned
+    holdout: Conditioned
+    noise: np.ndarray
+    library: Library
+    equations: NormalEquations
+    holdout_equations: NormalEquations
+    selection: Selection
+    comparisons: tuple[Comparison, ...]
+    holdout_gain: dict[int, HoldoutGain]
+    refit: Refit
+    seed: int
+    rejected: tuple[Rejection, ...] = ()
+    transients: tuple[Transient, ...] = ()
+    events: tuple[EventInterval, ...] = ()
+    ambiguous: tuple[AmbiguousCause, ...] = ()
+
+    @property
+    def effects(self) -> tuple[NamedEffect, ...]:
+        """Persistent effects and transients."""
+        return (*self.refit.effects, *(p.effect for p in self.transients))
+
+    @cached_property
+    def drifts(self) -> tuple[Drift, ...]:
+        """Friction that changes over a recording."""
+        return find_drifts(set_aside(self.problem, self.events), self.effects)
+
+    @cached_property
+    def after(self) -> Remainder:
+        """Residuals of the corrected model."""
+        return remainder_of(self.problem, self.effects)
+
+    @cached_property
+    def remainders(self) -> tuple[JointRemainder, ...]:
+        """The remainder of each joint: power, residual share and predictable share."""
+        return joint_remainders(self.problem, self.after, self.noise, self.seed)
+
+    @property
+    def missed(self) -> np.ndarray:
+        """√max(mean r² − σ², 0) on held-out motion: error of the corrected model beyond noise, shape (dof,) [N m]."""
+        power = np.array([joint.power for joint in self.remainders])
+        return np.sqrt(np.maximum(power - self.noise**2, 0.0))
+
+    @property
+    def corrected(self) -> CorrectedModel:
+        """The nominal model with the named effects."""
+        problem = self.problem
+        return CorrectedModel(
+            problem.nominal, self.effects, problem.slow, problem.held, problem.straight, left=self.missed
+        )

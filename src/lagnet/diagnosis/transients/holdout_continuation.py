@@ -1,0 +1,40 @@
+"""Hold-out continuation: transients that still act when the held-out part of their recording begins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.transients.transient import Transient
+
+
+def carry_on(
+    problem: Problem, passing: Sequence[Transient], unnamed: Sequence[EventInterval]
+) -> tuple[tuple[Transient, ...], tuple[EventInterval, ...]]:
+    """Effects that continue into the held-out part of their recording, and the events that they do not explain."""
+    out, left = [], list(unnamed)
+    for one in passing:
+        found = [s for s in left if _continues(problem, one, s)]
+        out.append(_until(one, found[0].end, problem.rate) if found else one)
+        left = [s for s in left if s not in found]
+    return tuple(out), tuple(left)
+
+
+def _continues(problem: Problem, passing: Transient, event: EventInterval) -> bool:
+    """Whether a held-out event begins where the fitted part of the effect's recording ends with the effect."""
+    fitted = [p for p in problem.fit if p.recording == passing.effect.recording]
+    held = [p for p in problem.holdout if p.recording == event.recording and p.origin == passing.effect.recording]
+    if not (event.held_out and fitted and held and passing.effect.interval):
+        return False
+    slack = SMEAR / problem.bandwidth
+    to_the_end = passing.effect.interval[1] > fitted[-1].time[fitted[-1].keep[-1]] - slack
+    return bool(to_the_end and event.start < held[0].time[held[0].keep[0]] + slack)
+
+
+def _until(passing: Transient, end: float, rate: float) -> Transient:
+    """The same effect with a later end, known to one period of the scanned samples."""
+    start = passing.effect.interval[0] if passing.effect.interval else end
+    intervals = {**passing.intervals, "t1": (end - 1.0 / rate, end + 1.0 / rate)}
+    return replace(passing, effect=replace(passing.effect, interval=(start, end)), intervals=intervals)

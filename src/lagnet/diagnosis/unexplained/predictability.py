@@ -1,0 +1,114 @@
+"""1 − E(model)/E(0): share of a residual that a flexible function of state and short history predicts on new motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from sklearn.ensemble import HistGradientBoostingRegressor
+from threadpoolctl import threadpool_limits
+
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.regression.plain_terms import sparse_share
+
+MOST = 4_000  # training samples
+HISTORY = 0.5  # how far back the short history looks, in periods of the bandwidth
+STRONGEST = 4  # signals that are reported
+LEAST_EFFECT = 0.05  # of the residual power, below which a signal is not reported as predicting it
+
+
+@dataclass(frozen=True, eq=False)
+class Predictability:
+    """Predictable share of one joint's residual and the signals that it depends on.
+
+    Args:
+        share: predicted share of the residual's power on held-out motion, 0 to 1.
+        depends_on: signals that predict it, strongest first, such as q_2 or v_4.
+    """
+
+    share: float
+    depends_on: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """Input signals of the flexible model at the kept samples.
+
+    Args:
+        names: one a column.
+        table: shape (n, n_signals).
+    """
+
+    names: tuple[str, ...]
+    table: np.ndarray
+
+    def of(self, name: str) -> np.ndarray:
+        """One signal by its name, shape (n,)."""
+        return self.table[:, self.names.index(name)]
+
+    def only(self, rows: np.ndarray) -> Signals:
+        """The signals of some samples."""
+        return Signals(self.names, self.table[rows])
+
+
+def signals_of(problem: Problem, pieces: tuple[Segment, ...]) -> Signals:
+    """Positions, velocities, accelerations, load and the velocities a moment before."""
+    dof = problem.n_dof
+    names = [f"{s}_{j}" for s in ("q", "v", "a", "load") for j in range(dof)] + [f"history_{j}" for j in range(dof)]
+    back = max(1, int(HISTORY * problem.rate / problem.bandwidth))
+    rows = []
+    for p in pieces:
+        before = p.v[np.maximum(p.keep - back, 0)]
+        rows.append(np.hstack([p.q[p.keep], p.v[p.keep], p.a[p.keep], p.load[p.keep], before]))
+    return Signals((*names, "time"), np.hstack([np.vstack(rows), _time(pieces)[:, None]]))
+
+
+def _time(pieces: tuple[Segment, ...]) -> np.ndarray:
+    return np.concatenate([p.time[p.keep] for p in pieces])
+
+
+def predictability_of(
+    signals: Signals, residual: np.ndarray, counts: np.ndarray, unseen: Signals, unseen_residual: np.ndarray, seed: int
+) -> Predictability:
+    """Boosted trees or a few plain terms, whichever does better, on the fit samples, judged on the held-out ones.
+
+    Args:
+        residual, unseen_residual: shape (n,), (m,), one joint [N m].
+        counts: shape (n,), samples of the fit that count.
+    """
+    rng = np.random.default_rng(seed)
+    rows = np.flatnonzero(counts)
+    rows = np.sort(rng.permutation(rows)[:MOST])
+    power = float(np.mean(unseen_residual**2))
+    if rows.size < 50 or not power > 0:
+        return Predictability(0.0, ())
+    trees = HistGradientBoostingRegressor(
+        max_iter=60, max_leaf_nodes=12, learning_rate=0.12, min_samples_leaf=20, random_state=seed
+    )
+    with threadpool_limits(1):
+        trees.fit(signals.table[rows], residual[rows])
+        error = _error(trees, unseen.table, unseen_residual)
+        share = float(np.clip(1.0 - error / power, 0.0, 1.0))
+        named = _strongest(trees, unseen, unseen_residual, error, power, rng) if share > LEAST_EFFECT else ()
+    plain, terms = sparse_share(signals.names, signals.table[rows], residual[rows], unseen.table, unseen_residual)
+    return (
+        Predictability(plain, terms[:STRONGEST]) if plain > max(share, LEAST_EFFECT) else Predictability(share, named)
+    )
+
+
+def _error(trees: HistGradientBoostingRegressor, table: np.ndarray, truth: np.ndarray) -> float:
+    return float(np.mean((truth - trees.predict(table)) ** 2))
+
+
+def _strongest(trees, unseen: Signals, truth: np.ndarray, error: float, power: float, rng) -> tuple[str, ...]:
+    """Signals with the largest permutation importance."""
+    rows = np.sort(rng.permutation(truth.size)[:1500])
+    table, truth = unseen.table[rows], truth[rows]
+    error = _error(trees, table, truth)
+    losses = {}
+    for k, name in enumerate(unseen.names):
+        shuffled = table.copy()
+        shuffled[:, k] = rng.permutation(shuffled[:, k])
+        losses[name] = _error(trees, shuffled, truth) - error
+    ranked = sorted(losses, key=lambda n: -losses[n])
+    return tuple(n for n in ranked if losses[n] > LEAST_EFFECT * power)[:STRONGEST]

@@ -1,0 +1,111 @@
+"""r after all named effects: its power at each joint, its predictable share, and a formula where a simple one holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.problem.residuals import power_of, stacked
+from lagnet.diagnosis.unexplained.formula import RemainderShape, find_shape
+from lagnet.diagnosis.unexplained.predictability import Predictability, Signals, predictability_of, signals_of
+from lagnet.models.corrected.model import NamedEffect, torque_with
+
+HALVES = 6  # parts of the fitted motion that predict as many others
+
+
+@dataclass(frozen=True, eq=False)
+class Remainder:
+    """Residual r of the corrected model, with the signals that may predict it.
+
+    Args:
+        fit, holdout: (residual, counts), each of shape (n, dof).
+        seen, unseen: what a flexible model may look at, on the same samples.
+    """
+
+    fit: tuple[np.ndarray, np.ndarray]
+    holdout: tuple[np.ndarray, np.ndarray]
+    seen: Signals
+    unseen: Signals
+
+
+@dataclass(frozen=True, eq=False)
+class JointRemainder:
+    """The remainder of one joint.
+
+    Args:
+        above: whether it exceeds the noise, on held-out motion or, if not there, on the fitted one.
+        power: mean square on held-out samples [N² m²].
+        share: of the joint's mismatch beyond the noise that is left, on the motion where it exceeds it, 0 to 1.
+        ceiling: how much of it any smooth function predicts; nothing where it is noise.
+        shape: how it looks against its strongest signal; None where it is noise or nothing predicts it.
+    """
+
+    above: bool
+    power: float
+    share: float
+    ceiling: Predictability
+    shape: RemainderShape | None
+
+
+def remainder_of(problem: Problem, effects: Sequence[NamedEffect]) -> Remainder:
+    """Residuals of the corrected model on fit and held-out samples."""
+    parts = []
+    for pieces in (problem.fit, problem.holdout):
+        blind = [replace(p.motion(problem), recorded=None) for p in pieces]  # a prediction has no recorded torque
+        predicted = [torque_with(m, effects) for m in blind]
+        rest = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
+        parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
+    seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
+    return Remainder(parts[0], parts[1], seen, unseen)
+
+
+def joint_remainders(problem: Problem, after: Remainder, noise: np.ndarray, seed: int) -> tuple[JointRemainder, ...]:
+    """The remainder of each joint.
+
+    Args:
+        noise: shape (dof,), noise floor [N m].
+    """
+    return tuple(_joint(problem, after, float(noise[j]), seed, j) for j in range(problem.n_dof))
+
+
+def _joint(problem: Problem, after: Remainder, noise: float, seed: int, joint: int) -> JointRemainder:
+    power, fitted = power_of(*after.holdout, joint), power_of(*after.fit, joint)
+    limit = (problem.limits.above_noise * noise) ** 2
+    if max(power, fitted) <= limit:
+        return JointRemainder(False, power, 0.0, Predictability(0.0, ()), None)
+    pieces, there = (problem.holdout, power) if power > limit else (problem.fit, fitted)
+    looks = _look_at(after, joint, problem.slow, seed) if power > limit else (Predictability(0.0, ()), None)
+    if not looks[0].depends_on and fitted > limit:  # held-out motion may be too short, or too unlike, to learn it for
+        looks = _look_at(_within_fit(after), joint, problem.slow, seed)
+    before = power_of(*stacked(problem, pieces), joint)
+    share = float(np.clip(max(0.0, there - noise**2) / max(before - noise**2, 1e-300), 0.0, 1.0))
+    return JointRemainder(True, power, share, *looks)
+
+
+def _within_fit(after: Remainder) -> Remainder:
+    """The fitted motion alone: every second part of it is predicted from the others."""
+    rest, counts = after.fit
+    seen, unseen = every_second_part(len(rest))
+    halves = [(rest[rows], counts[rows]) for rows in (seen, unseen)]
+    return Remainder(halves[0], halves[1], after.seen.only(seen), after.seen.only(unseen))
+
+
+def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of every second of a few parts of n samples in order, and all other rows."""
+    parts = np.array_split(np.arange(n), 2 * HALVES)
+    return np.concatenate(parts[0::2]), np.concatenate(parts[1::2])
+
+
+def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
+    (rest, counts), (test, test_counts) = after.fit, after.holdout
+    seen, truth = rest[:, joint], test[:, joint] * test_counts[:, joint]
+    ceiling = predictability_of(after.seen, seen, counts[:, joint], after.unseen, truth, seed)
+    shape = None
+    if ceiling.depends_on:
+        signals = (after.seen.only(counts[:, joint]), after.unseen.only(test_counts[:, joint]))
+        rests = (seen[counts[:, joint]], test[test_counts[:, joint], joint])
+        shape = find_shape(signals, rests, ceiling.depends_on, slow)
+    return ceiling, shape

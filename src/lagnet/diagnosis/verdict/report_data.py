@@ -1,0 +1,184 @@
+"""The arrays behind a verdict: what a reader wants to see before believing it. Reports draw from here.
+
+A verdict holds the conclusions, as JSON; this holds the curves and the contests they rest on. Every part may be absent:
+a learned nominal model has no skeleton, a joint without friction no law to draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from lagnet.diagnosis.nominal.log_alignment import SideBySide
+from lagnet.diagnosis.unexplained.formula import RemainderShape
+from lagnet.rigid_body.body_tree import TreeBody
+from lagnet.types import Samples
+
+
+@dataclass(frozen=True)
+class HeldOutSeries:
+    """Torque of one joint on the held-out recordings, all three lines through the same zero-phase filter.
+
+    Args:
+        time: t, shape (n,) [s], increasing within a segment; every recording may start anew.
+        measured: torque of the recording, shape (n,) [N m or N].
+        nominal: torque of the nominal model, shape (n,) [N m or N].
+        corrected: torque of the nominal model with the named effects, shape (n,) [N m or N].
+        segments: (start, stop) of each unbroken motion, as sample indices; one segment of all samples if empty.
+        names: a name for each segment, such as its recording; may be empty.
+    """
+
+    time: Samples
+    measured: Samples
+    nominal: Samples
+    corrected: Samples
+    segments: tuple[tuple[int, int], ...] = ()
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ResidualByVelocity:
+    """Measured minus modelled torque of one joint, sample by sample, low-pass filtered.
+
+    Args:
+        velocity: v, shape (n,) [rad/s or m/s].
+        nominal: residual of the nominal model, shape (n,) [N m or N].
+        corrected: residual left by the named effects, shape (n,) [N m or N].
+    """
+
+    velocity: Samples
+    nominal: Samples
+    corrected: Samples
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """The sum of the named friction effects of one joint as a curve over velocity.
+
+    Args:
+        effects: names of the catalogue that the curve adds up.
+        velocity: v, shape (n,) [rad/s or m/s], increasing.
+        torque: r(v), shape (n,) [N m or N].
+    """
+
+    effects: tuple[str, ...]
+    velocity: Samples
+    torque: Samples
+
+
+@dataclass(frozen=True)
+class JointEvidence:
+    """What one joint's verdict rests on.
+
+    Args:
+        joint: its name.
+        unit: "N m" for a revolute joint, "N" for a prismatic one.
+        held_out: torque over time on the held-out recordings.
+        residual: residual against velocity.
+        law: the fitted friction law.
+        noise_rms: estimated noise of the torque residual [unit].
+        ceiling_share: share of what the named effects leave that any smooth function of state and short history
+            predicts on held-out motion, 0 to 1; None where they leave noise alone.
+        leftover: what they leave, against the signal that predicts it best.
+    """
+
+    joint: str
+    unit: str = "N m"
+    held_out: HeldOutSeries | None = None
+    residual: ResidualByVelocity | None = None
+    law: FrictionLaw | None = None
+    noise_rms: float | None = None
+    ceiling_share: float | None = None
+    leftover: RemainderShape | None = None
+
+    @property
+    def velocity_unit(self) -> str:
+        """Unit of the joint's velocity."""
+        return "m/s" if self.unit == "N" else "rad/s"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A named effect against its rivals on the same data: (rival, log10 odds in favour of the named effect)."""
+
+    effect: str
+    joint: str | None
+    rivals: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Where the joints of the arm lie in one pose, in the base frame.
+
+    Args:
+        points: base, origin of every joint in model order, tip; shape (dof + 2, 3) [m].
+        axes: unit vector along which or about which each joint moves, shape (dof, 3).
+    """
+
+    points: np.ndarray
+    axes: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class ArmMotion:
+    """A held-out motion to play, with what is missing at every joint.
+
+    Args:
+        tree: the moving bodies.
+        tip: shape (3,), point at the end of the arm in the last joint's frame [m].
+        time: shape (m,), from zero [s].
+        q: shape (m, dof), positions [rad or m].
+        before, after: shape (m, dof), size of the torque that the nominal and the corrected model miss, in scatters of
+            the measured torque.
+    """
+
+    tree: tuple[TreeBody, ...]
+    tip: np.ndarray
+    time: Samples
+    q: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
+
+@dataclass(frozen=True)
+class SelectionStep:
+    """One effect taken up, and the mean nMSE on held-out blocks with it."""
+
+    effect: str
+    joint: str | None
+    holdout_nmse: float
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """All that a report shows beyond the verdict itself.
+
+    Args:
+        joints: one entry a joint, in model order.
+        comparisons: the named and tied effects against their rivals.
+        skeleton: the arm's joints in space, where the nominal model has bodies.
+        selection: the effects in the order of their choice.
+        settings: resolved settings of the diagnosis, by name.
+        versions: versions of the packages that computed it, by name.
+        checksums: sha256 of what went in, by file name.
+        overlays: real and simulated logs of the same commands, where there were logs of a simulator.
+        motion: a held-out motion to play, where the nominal model has bodies.
+    """
+
+    joints: tuple[JointEvidence, ...] = ()
+    comparisons: tuple[Comparison, ...] = ()
+    skeleton: Skeleton | None = None
+    selection: tuple[SelectionStep, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
+    checksums: Mapping[str, str] = field(default_factory=dict)
+    overlays: tuple[SideBySide, ...] = ()
+    motion: ArmMotion | None = None
+
+    def of(self, joint: str) -> JointEvidence:
+        """The evidence on a joint by its name; an empty one where there is none."""
+        found = (entry for entry in self.joints if entry.joint == joint)
+        return next(found, JointEvidence(joint))

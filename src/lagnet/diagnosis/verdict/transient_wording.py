@@ -1,0 +1,93 @@
+"""Transients and event intervals, as parts of a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.intervals import EventInterval
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.diagnosis.transients.transient import Transient
+from lagnet.diagnosis.unexplained.friction_drift import Drift
+from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, NamedParameter
+from lagnet.diagnosis.verdict.wording import explain_transient
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.model import EDGES
+from lagnet.recordings.recording import Recording
+
+MOSTLY = 0.5  # of the held-out residual power in events, above which the remainder is reported to depend on time
+
+
+def transient_effects(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
+    """The named effects that act on an interval of one fitted recording."""
+    half = 0.5 / state.problem.rate  # an edge lies between the last sample outside and the first inside
+    return tuple(_effect(p, _name(fit, p.effect.recording or 0), half) for p in state.transients)
+
+
+def _effect(passing: Transient, recording: str, half: float) -> EffectFound:
+    fit, (start, end) = passing.fit, passing.effect.interval or (0.0, 0.0)
+    effect = replace(passing.effect, interval=(start - half, end + half))
+    law = effect_named(effect.effect)
+    units = {p.name: p.unit for p in law.parameters} | dict.fromkeys(EDGES, "s")
+    parameters = tuple(
+        NamedParameter(n, float(x), units[n], passing.intervals[n]) for n, x in effect.parameters().items()
+    )
+    evidence = EffectEvidence(fit.without, fit.with_it, passing.share, fit.rival, fit.odds)
+    interval = effect.interval or (0.0, 0.0)
+    words = explain_transient(law, interval, recording, parameters, fit.tied, evidence)
+    status = "tied" if fit.tied else "named"
+    return EffectFound(law.name, None, status, fit.tied, parameters, evidence, words, interval, recording)
+
+
+def words_on_time(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    """A line on every interval that has no name, and on every friction that drifts."""
+    events = [_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in state.events]
+    drifts = [_drifting(d, state.problem.joints[d.joint], _name(fit, d.recording)) for d in state.drifts]
+    return (*events, *drifts)
+
+
+def _drifting(drift: Drift, joint: str, recording: str) -> str:
+    way, levels = "falls" if drift.change < 0 else "rises", ", ".join(f"{100.0 * x:.3g}" for x in drift.levels)
+    return (
+        f"{joint}: friction {way} by {100.0 * abs(drift.change):.2g} ± {196.0 * drift.error:.1g} % over {recording} "
+        f"({levels} % of the fitted friction in its quarters), as when a joint warms up; it is fitted as constant"
+    )
+
+
+def _name(recordings: Sequence[Recording], index: int, held_out: bool = False) -> str:
+    return recordings[index].path or f"{'held-out ' if held_out else ''}recording {index + 1}"
+
+
+def _warning(event: EventInterval, recording: str) -> str:
+    why = "it lies in a held-out recording and gets no name" if event.held_out else "it has no name"
+    return (
+        f"{recording}: from {event.start:.4g} s to {event.end:.4g} s something acts on the arm that is absent from the "
+        f"rest of the recordings, such as a contact or a load; {why}"
+    )
+
+
+def events_in_fit(state: DiagnosisState) -> tuple[tuple[int, float, float], ...]:
+    """Recording, start and end [s] of all transients and events in the fitted recordings."""
+    named = [(p.effect.recording or 0, *(p.effect.interval or (0.0, 0.0))) for p in state.transients]
+    return (*named, *((s.recording, s.start, s.end) for s in state.events if not s.held_out))
+
+
+def changes_in_time(state: DiagnosisState, joint: int) -> bool:
+    """Whether a joint's remainder depends on time: its friction drifts, or most of it lies in event intervals."""
+    drifts = any(d.joint == joint for d in state.drifts)
+    return drifts or _in_spells(state, state.after.holdout[0][:, joint]) > MOSTLY
+
+
+def _in_spells(state: DiagnosisState, rest: np.ndarray) -> float:
+    """Share of a joint's held-out residual power, shape (n,), that lies in intervals without a name."""
+    held = [s for s in state.events if s.held_out]
+    inside = [
+        np.any([(p.recording == s.recording) & (t >= s.start) & (t <= s.end) for s in held], axis=0)
+        for p in state.problem.holdout
+        for t in (p.time[p.keep],)
+        if held
+    ]
+    power = rest**2
+    return float(power[np.concatenate(inside)].sum() / max(power.sum(), 1e-300)) if inside else 0.0

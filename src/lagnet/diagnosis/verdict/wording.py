@@ -1,0 +1,85 @@
+"""Sentences of a verdict that an engineer can act on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from lagnet.diagnosis.estimation.gauss_newton import NOT_SAID
+from lagnet.diagnosis.identifiability.recording_advice import recording_against
+from lagnet.diagnosis.verdict.verdict import EffectEvidence, NamedParameter
+from lagnet.effects.effect import Effect
+from lagnet.recordings.conditioning.condition import Conditioned
+
+MOST_PARAMETERS = 4  # that a sentence lists
+LEAST_PERCENT = 0.01  # that is written as a number
+SELDOM_MET = (
+    " The held-out recordings hardly meet it:"
+    " these are errors on parts of the fitted ones, each predicted from the others."
+)
+
+
+def explain(
+    law: Effect, joint: str | None, parameters: Sequence[NamedParameter], tied: Sequence[str], evidence: EffectEvidence
+) -> str:
+    """One or two sentences: what, where, how large, and what it does for the held-out error."""
+    where = f"at {joint}" if joint else "on the whole arm"
+    shown = values(parameters)
+    remark = law.remark({p.name: p.value for p in parameters})
+    shown += f" ({remark})" if remark else ""
+    first = f"{law.title} {where}, {law.formula} with {shown}: without it the held-out error is "
+    first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
+    first += f"{percent(evidence.holdout_nmse_with)}."
+    if tied:
+        first += f" These recordings cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}. "
+        first += f"What would: {'; '.join(dict.fromkeys(recording_against([law.name], [t]) for t in tied))}."
+    return first
+
+
+def values(parameters: Sequence[NamedParameter]) -> str:
+    """The first few parameters that the recordings determine, with their values."""
+    told = [p for p in parameters if p.ci95[1] - p.ci95[0] < 2.0 * NOT_SAID] or parameters
+    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in told[:MOST_PARAMETERS])
+
+
+def explain_transient(
+    law: Effect,
+    interval: tuple[float, float],
+    recording: str,
+    parameters: Sequence[NamedParameter],
+    tied: Sequence[str],
+    evidence: EffectEvidence,
+) -> str:
+    """What acted, when, in which recording, and what it does for parts of that time that were not fitted."""
+    shown = values(parameters)
+    first = f"{law.title} from {interval[0]:.4g} s to {interval[1]:.4g} s of {recording}, {law.formula} with {shown}: "
+    first += f"in that time the error is {percent(evidence.holdout_nmse_without)} of the torque's variance without it, "
+    first += f"{percent(evidence.holdout_nmse_with)} with it, each part predicted from the others. "
+    first += "The corrected model has it in that time of that recording only."
+    if tied:
+        first += f" This time cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
+    return first
+
+
+def percent(share: float) -> str:
+    """A share as a percentage with two significant digits, and no power of ten."""
+    value = 100.0 * share
+    if value >= 10.0:
+        return f"{value:.0f} %"
+    return f"{value:.2g} %" if value >= LEAST_PERCENT else f"less than {LEAST_PERCENT:g} %"
+
+
+def advice(law: Effect, joint: str | None) -> str:
+    """What to record so that an effect can be judged."""
+    where = f"{joint}: " if joint else ""
+    return f"{where}record {law.shown_by}"
+
+
+def clock_shift_words(fit: Conditioned) -> Iterator[str]:
+    """A sentence where torques were read at other times than they are stamped with."""
+    if fit.torque_shift:
+        way = "later" if fit.torque_shift > 0 else "earlier"
+        yield (
+            f"at every joint the torque is stamped {1e3 * abs(fit.torque_shift):.2g} ms {way} than the motion that it "
+            f"belongs to ({abs(fit.torque_shift) * fit.rate:.2g} of a sample), as when it is held from one sample to "
+            "the next: torques were shifted by that before all else"
+        )

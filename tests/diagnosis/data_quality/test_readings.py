@@ -1,0 +1,62 @@
+"""Recordings that are whole but wrong are told with their cause, before any physics is looked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from validation.bad_data.corruptions import CORRUPTIONS
+from validation.bad_data.sound import SoundSettings, sound_recording
+
+from lagnet.diagnosis.data_quality.checks import CHECK_NAMES
+from lagnet.diagnosis.data_quality.inspect import inspect_quality
+from lagnet.rigid_body.robot import Robot, load_description
+
+
+@pytest.fixture(scope="module")
+def ur5() -> Robot:
+    return load_description("ur5")
+
+
+@pytest.fixture(scope="module")
+def recordings(ur5) -> list:
+    rng = np.random.default_rng(4)
+    return [sound_recording(ur5, SoundSettings(), rng, path=f"run_{k}.csv") for k in range(2)]
+
+
+def test_sound_recordings_raise_no_alarm(ur5, recordings) -> None:
+    assert not [f.sentence() for f in inspect_quality(recordings, ur5)]
+
+
+@pytest.mark.parametrize("corruption", CORRUPTIONS, ids=lambda c: c.name)
+def test_the_cause_is_told(corruption, ur5, recordings) -> None:
+    broken = corruption.do(list(recordings), np.random.default_rng(1))
+    found = inspect_quality(broken, ur5)
+    assert any(word in f.detail for f in found for word in corruption.words), [f.sentence() for f in found]
+    assert corruption.survived or any(f.refused for f in found)
+
+
+@pytest.mark.parametrize("other", ["ur10", "ur3"])
+def test_the_log_of_another_robot_is_told(other, ur5) -> None:
+    rng = np.random.default_rng(2)
+    (found,) = inspect_quality([sound_recording(load_description(other), SoundSettings(), rng)], ur5)
+    assert found.refused
+    assert found.mend.startswith(f"give --robot {other}")
+
+
+def test_an_arm_with_much_that_the_model_lacks_is_no_bad_data(ur5) -> None:
+    """A heavy payload, strong friction: physics, and not another order, clock or robot."""
+    settings = SoundSettings(viscous=1.5, coulomb=1.0)
+    loaded = ur5.with_inertial_parameters(_heavier(ur5)) if hasattr(ur5, "with_inertial_parameters") else ur5
+    recording = sound_recording(loaded, settings, np.random.default_rng(3))
+    assert not [f.sentence() for f in inspect_quality([recording], ur5)]
+
+
+def _heavier(robot: Robot) -> np.ndarray:
+    bodies = np.array(robot.inertial_parameters(), dtype=float)
+    bodies[-1] += np.array([4.0, 0.0, 0.0, 0.4, 0.05, 0.0, 0.05, 0.0, 0.0, 0.01])
+    return bodies
+
+
+def test_every_reading_has_a_corruption() -> None:
+    orders = {"joint_order"}
+    assert set(CHECK_NAMES) == {*orders, "clock_scale", "position_unit", "torque_lag", "another_robot"}

@@ -1,0 +1,112 @@
+"""What recordings determine without a name: unlisted friction, wrong bodies, far models; nothing where nothing is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.diagnosis.conftest import Plant
+from validation.real_arms.least_squares import LeastSquares
+
+from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.recordings.conditioning.condition import condition
+from lagnet.rigid_body.inertia import is_physically_consistent
+from lagnet.rigid_body.random_arm import random_arm
+
+MUCH_LESS = 0.1  # of the nominal model's error, that the layer may leave of physics within its span
+NO_WORSE = 1.1  # times the error of plain least squares
+
+
+def posed(nominal, plant, seconds: float = 24.0):
+    fit = condition([plant.record(1, seconds)])
+    return pose_problem(nominal, fit, condition([plant.record(2, seconds)], fit.bandwidth))
+
+
+def unseen_errors(problem, torque) -> np.ndarray:
+    """Mean squared held-out error of each joint, for a function of a piece."""
+    parts = [problem.reduce(p, p.tau - torque(p)) for p in problem.holdout]
+    return np.mean(np.concatenate(parts) ** 2, axis=0)
+
+
+def corrected(problem, found):
+    return CorrectedModel(problem.nominal, (), problem.slow, straight=problem.straight, identified=found.layer)
+
+
+def along(model):
+    return lambda p: model.torque_along(p.time, p.q, p.v, p.a)
+
+
+def usual_load(arm) -> np.ndarray:
+    """Mean size of the gravity torque of each joint, at least half a newton metre."""
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (200, arm.n_dof))
+    return np.maximum(np.abs(arm.gravity_torque(q)).mean(axis=0), 0.5)
+
+
+def saturating_friction(arm):
+    """Friction that no law of the catalogue has: it saturates over speed and grows with the load."""
+    size = usual_load(arm)
+    return lambda q, v, a, load: 0.2 * (size + 0.3 * np.abs(load)) * np.tanh(v / 0.4)
+
+
+def wrong_bodies(arm, factors):
+    return arm.with_inertial_parameters(arm.inertial_parameters() * np.asarray(factors)[:, None])
+
+
+def test_friction_that_no_law_names_is_predicted() -> None:
+    arm = random_arm(3, seed=5, kinds=("revolute",))
+    problem = posed(arm, Plant(arm, [saturating_friction(arm)]))
+    model = corrected(problem, identify(problem, ()))
+    before, after = unseen_errors(problem, lambda p: p.load), unseen_errors(problem, along(model))
+    assert np.all(after < MUCH_LESS * before)
+
+
+@pytest.mark.parametrize("factors", [(1.0, 0.5, 2.0), (1.0, 2.0, 1e-6), (0.5, 0.5, 0.5)])
+def test_far_models_end_no_worse_than_plain_least_squares(factors) -> None:
+    arm = random_arm(3, seed=7, kinds=("revolute",))
+    size = 10.0 * usual_load(arm)
+    heavy = [lambda q, v, a, load: size * np.tanh(v / 0.02)]
+    nominal = wrong_bodies(arm, factors)
+    problem = posed(nominal, Plant(arm, heavy))
+    model = corrected(problem, identify(problem, ()))
+    plain = LeastSquares(nominal, problem)
+    assert np.all(unseen_errors(problem, along(model)) <= NO_WORSE * unseen_errors(problem, plain.torque))
+
+
+def test_nothing_is_identified_where_nothing_is_missing() -> None:
+    arm = random_arm(3, seed=5, kinds=("revolute",))
+    problem = posed(arm, Plant(arm))
+    found = identify(problem, ())
+    if found is not None:  # a joint may be told something within its noise, but never at a cost
+        after = unseen_errors(problem, along(corrected(problem, found)))
+        assert np.all(after < 1.05 * unseen_errors(problem, lambda p: p.load))
+
+
+def test_identified_bodies_are_bodies_and_the_terms_add_up() -> None:
+    arm = random_arm(3, seed=9, kinds=("revolute",))
+    nominal = wrong_bodies(arm, (1.0, 1.4, 0.7))
+    problem = posed(nominal, Plant(arm, [saturating_friction(arm)]))
+    model = corrected(problem, identify(problem, ()))
+    assert np.all(is_physically_consistent(model.inertial_parameters()))
+    q, v, a = (np.random.default_rng(0).uniform(-1, 1, (20, 3)) for _ in range(3))
+    mass = model.mass_matrix(q)
+    assert np.linalg.eigvalsh(mass).min() > 0.0
+    parts = np.einsum("nij,nj->ni", mass, a) + model.coriolis_torque(q, v) + model.gravity_torque(q)
+    torque = model.inverse_dynamics(q, v, a)
+    np.testing.assert_allclose(parts + model.residual_torque(q, v, a), torque, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(model.forward_dynamics(q, v, torque), a, rtol=1e-6, atol=1e-6)
+
+
+def test_a_model_without_bodies_gets_terms_alone() -> None:
+    arm = random_arm(2, seed=3, kinds=("revolute",))
+
+    class Bodiless:
+        joints, n_dof = arm.joints, arm.n_dof
+        inverse_dynamics, mass_matrix = staticmethod(arm.inverse_dynamics), staticmethod(arm.mass_matrix)
+        coriolis_torque, gravity_torque = staticmethod(arm.coriolis_torque), staticmethod(arm.gravity_torque)
+
+    problem = posed(Bodiless(), Plant(arm, [saturating_friction(arm)]))
+    found = identify(problem, ())
+    assert found.layer.bodies is None
+    after = unseen_errors(problem, along(corrected(problem, found)))
+    assert np.all(after < MUCH_LESS * unseen_errors(problem, lambda p: p.load))

@@ -1,0 +1,44 @@
+"""A cause that is put into a MuJoCo plant is named, with its size, and nothing is named where nothing is hidden."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from lagnet.diagnosis.motion.diagnose import MotionDiagnosis, diagnose_motion
+from lagnet.rigid_body.robot import load_description
+
+PERCENT = 0.05  # what the encoder's step and MuJoCo's nearly rigid friction leave of a parameter
+
+
+def diagnosed(pendulum: ModuleType, nominal: Path, tmp_path: Path, plant: dict, signal: dict) -> MotionDiagnosis:
+    real = pendulum.write_model(tmp_path / "real.xml", **plant)
+    fit = [pendulum.record(real, 40.0, seed, **signal) for seed in (1, 2)]
+    return diagnose_motion(fit, load_description(nominal), [pendulum.record(real, 20.0, 3, **signal)])
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameter", "value", "plant", "signal"),
+    [
+        ("coulomb_friction", "Fc", 0.12, {"friction": 0.12}, {}),
+        pytest.param("gain_error", "kp", 5.0, {"kp": 5.0}, {}, marks=pytest.mark.slow),
+        ("dead_band", "b", 0.05, {}, {"dead_band": 0.05}),
+        pytest.param("rotor_inertia", "Ia", 0.04, {"rotor": 0.04}, {}, marks=pytest.mark.slow),
+        pytest.param("command_delay", "T", 0.04, {}, {"delay": 40}, marks=pytest.mark.slow),
+    ],
+)
+def test_a_hidden_cause_is_named_with_its_size(pendulum, nominal, tmp_path, effect, parameter, value, plant, signal):
+    found = diagnosed(pendulum, nominal, tmp_path, plant, signal)
+    assert found.effects[0].effect == effect
+    assert found.effects[0].value(parameter) == pytest.approx(value, rel=PERCENT)
+    assert [e.effect for e in found.effects] == [effect]
+    errors = found.verdict.errors[0]
+    assert errors.rmse_corrected < 0.3 * errors.rmse_nominal
+
+
+def test_nothing_is_named_where_nothing_is_hidden(pendulum, nominal, tmp_path):
+    found = diagnosed(pendulum, nominal, tmp_path, {}, {})
+    assert found.effects == ()
+    assert not found.verdict.found

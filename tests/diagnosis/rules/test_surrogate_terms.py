@@ -1,0 +1,87 @@
+"""A likeness of physics that is in no catalogue gets no name; the physics of the catalogue keeps its own beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.diagnosis.rules import surrogate_terms
+from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.recordings.conditioning.condition import condition
+from lagnet.rigid_body.random_arm import random_arm
+
+ELABORATE = {"torque_gain", "link_inertia", "gravity_tilt", "payload", "load_dependent_friction", "quadratic_drag"}
+
+
+def _elaborate(result) -> set[str]:
+    return {e.effect for e in result.effects} & ELABORATE
+
+
+@pytest.fixture(scope="module")
+def pulled(plant):
+    """An arm of which one joint is pulled by the angle of the next; its own weight looks much like it."""
+    robot = random_arm(3, seed=14, kinds=("revolute",), fixed=False)
+    pull = 0.3 * plant(robot=robot).usual_torque()[0]
+
+    def by_another_angle(q, v, a, body):
+        out = np.zeros_like(q)
+        out[:, 0] = pull * (q[:, 1] - 0.3)
+        return out
+
+    arm = plant(by_another_angle, robot=robot)
+    return [arm.record(1), arm.record(2)], robot, [arm.record(3)]
+
+
+@pytest.fixture(scope="module")
+def cubic(plant, at, arm):
+    """Drag of the third power of speed."""
+    made = plant(at(1, lambda q, v, a, t: 5.0 * v**3))
+    return [made.record(1), made.record(2)], arm, [made.record(3)]
+
+
+@pytest.mark.slow
+def test_a_pull_by_another_joints_angle_is_no_error_of_weight(pulled) -> None:
+    result = diagnose(*pulled)
+    assert not _elaborate(result)
+    assert result.verdict.unexplained[0].above_noise
+
+
+@pytest.mark.slow
+def test_a_cubic_drag_is_no_quadratic_one(cubic) -> None:
+    result = diagnose(*cubic)
+    assert not _elaborate(result)
+    assert result.verdict.unexplained[1].above_noise
+
+
+@pytest.mark.slow
+def test_without_the_rule_a_cubic_drag_would_have_a_wrong_name(cubic) -> None:
+    others = [r for r in RULES if r.name != surrogate_terms.SurrogateTerms.name]
+    assert _elaborate(diagnose(*cubic, rules=others)) == {"quadratic_drag"}
+
+
+@pytest.mark.slow
+def test_a_true_name_beside_physics_without_one_is_kept(plant, at, arm, names) -> None:
+    both = plant(
+        at(1, lambda q, v, a, t: 5.0 * v * np.abs(v)),
+        at(1, lambda q, v, a, t: 0.6 * q**2),
+    )
+    result = diagnose([both.record(4), both.record(5)], arm, [both.record(6)])
+    assert ("quadratic_drag", arm.joints[1]) in names(result)
+
+
+def test_a_cable_that_goes_taut_is_among_the_plain_terms(arm, plant) -> None:
+    """Wherever it goes taut, between the angles that are tried too: three terms leave next to nothing of it."""
+    given = condition([plant().record(1)])
+    problem, own = pose_problem(arm, given, given), 1
+    terms = surrogate_terms._terms(problem, problem.fit, own)
+    angle = np.concatenate([p.q[:, own] for p in problem.fit])
+    tight, hard = np.quantile(angle, [0.56, 0.83])
+    pull = [np.maximum(p.q[:, own] - tight, 0.0) + 3.0 * np.maximum(p.q[:, own] - hard, 0.0) for p in problem.fit]
+    wanted = np.concatenate(
+        [problem.reduce(p, x[:, None])[:, 0] * p.counts[:, own] for p, x in zip(problem.fit, pull, strict=True)]
+    )
+    chosen = terms[:, surrogate_terms._chosen(np.zeros((len(wanted), 0)), terms, wanted, 3)]
+    rest = wanted - chosen @ np.linalg.lstsq(chosen, wanted, rcond=None)[0]
+    assert np.sum(rest**2) < 0.01 * np.sum(wanted**2)

@@ -1,0 +1,92 @@
+"""Three real arms: the lines of validation/real_arms that hold, so that they go on holding."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import butter, sosfiltfilt
+
+from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.writing import holdout_table
+from lagnet.recordings.loading.load import load_recording
+from lagnet.rigid_body.robot import load_description
+
+TORQUE_CONSTANT = (14.87, 13.26, 11.13, 10.62, 11.03, 11.47)  # [N m/A], the authors' identification
+DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "presliding_hysteresis"}
+
+
+def diagnosed(folder, urdf: str, fit: list[str], constants=None):
+    robot = load_description(folder / urdf)
+    read = [load_recording(folder / f, robot=robot, torque_constant=constants) for f in [*fit, "holdout.csv.gz"]]
+    return diagnose(read[:-1], robot, read[-1:])
+
+
+def nmse_at_5_hz(result) -> np.ndarray:
+    table = holdout_table(result).to_pydict()
+    time = np.array(table["time"])
+    clock = np.arange(time[0], time[-1], np.median(np.diff(time)))
+    filter_ = butter(4, 5.0, fs=1.0 / (clock[1] - clock[0]), output="sos")
+
+    def slow(name: str) -> np.ndarray:
+        return sosfiltfilt(filter_, np.interp(clock, time, np.array(table[name])))
+
+    joints = range(len(result.verdict.joints))
+    errors = [np.mean((slow(f"tau_measured_{j}") - slow(f"tau_corrected_{j}")) ** 2) for j in joints]
+    return np.array([e / np.var(slow(f"tau_measured_{j}")) for j, e in enumerate(errors)])
+
+
+@pytest.fixture(scope="module")
+def ur10e(shared_data):
+    files = [f"fit_{k}.csv.gz" for k in range(4)]
+    return diagnosed(shared_data / "ur10e", "ur10e.urdf", files, TORQUE_CONSTANT)
+
+
+@pytest.fixture(scope="module")
+def tx40(shared_data):
+    return diagnosed(shared_data / "staubli_tx40", "tx40.urdf", ["fit.csv.gz"])
+
+
+@pytest.fixture(scope="module")
+def emps(shared_data):
+    return diagnosed(shared_data / "emps", "emps.urdf", ["fit.csv.gz"])
+
+
+def named(result, joint: str) -> set[str]:
+    return {e.effect for e in result.effects if e.joint == joint}
+
+
+@pytest.mark.shared_data
+def test_ur10e_has_friction_on_every_joint_and_no_payload(ur10e) -> None:
+    for joint in ur10e.corrected.joints:
+        assert "viscous_friction" in named(ur10e, joint), joint
+        assert DRY & named(ur10e, joint), joint
+    masses = [e.value("m") for e in ur10e.effects if e.effect == "payload"]
+    assert all(abs(m) < 0.15 for m in masses)
+
+
+@pytest.mark.shared_data
+def test_ur10e_torque_is_predicted_on_motion_not_seen(ur10e) -> None:
+    bounds = [0.010, 0.0013, 0.0013, 0.0062, 0.05]  # the second to fourth: with all but a network
+    assert np.all(nmse_at_5_hz(ur10e)[:5] <= bounds)
+
+
+@pytest.mark.shared_data
+def test_tx40_has_friction_and_rotors_on_its_uncoupled_joints(tx40) -> None:
+    for joint in tx40.corrected.joints[:4]:
+        assert {"viscous_friction", "rotor_inertia"} <= named(tx40, joint), joint
+
+
+@pytest.mark.shared_data
+def test_tx40_s_coupled_wrist_is_unexplained_and_not_misnamed(tx40) -> None:
+    own = {"viscous_friction", "rotor_inertia", "torque_offset", "quadratic_drag", "coupled_transmission"} | DRY
+    for left in tx40.verdict.unexplained[4:]:
+        assert left.above_noise
+        assert named(tx40, left.joint) <= own
+
+
+@pytest.mark.shared_data
+def test_emps_has_the_printed_dry_friction_and_the_right_mass(emps) -> None:
+    found = {e.effect: e for e in emps.effects}
+    assert {"viscous_friction", "coulomb_friction", "torque_offset"} <= set(found)
+    assert found["coulomb_friction"].value("Fc") == pytest.approx(20.4, rel=0.03)
+    assert not {"rotor_inertia", "link_inertia", "payload"} & set(found)

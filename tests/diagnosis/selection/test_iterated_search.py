@@ -1,0 +1,60 @@
+"""What a sensor does to a payload's torque is found although the nominal model has no payload."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.diagnose import diagnose
+
+MASS = 1.5  # [kg]
+TILTED = np.array([0.9, -0.7, -9.7])  # [m s⁻²]
+
+
+@pytest.fixture(scope="module")
+def loaded(arm):
+    return arm.with_payload(MASS, np.array([0.05, 0.08, 0.15]), 0.006 * np.eye(3))
+
+
+@pytest.mark.slow
+def test_a_limit_that_only_the_loaded_arm_reaches_is_named(plant, arm, loaded, at, names) -> None:
+    limit = 1.02 * max(float(np.abs(plant().record(s).tau[:, 0]).max()) for s in (1, 2, 3))
+    real = plant(at(0, lambda q, v, a, body: np.clip(body, -limit, limit) - body), robot=loaded)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("saturation", arm.joints[0])}
+    found = {e.effect: e for e in result.effects}
+    assert found["saturation"].value("tau_max") == pytest.approx(limit, rel=0.01)
+    assert found["payload"].value("m") == pytest.approx(MASS, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gain", [0.8, 1.25])
+def test_a_gain_of_a_joint_that_the_payload_loads_is_named(plant, arm, loaded, at, names, gain: float) -> None:
+    real = plant(at(2, lambda q, v, a, body: (gain - 1.0) * body), robot=loaded)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("torque_gain", arm.joints[2])}
+    found = {e.effect: e for e in result.effects}
+    assert found["torque_gain"].value("g") == pytest.approx(gain, rel=0.01)
+
+
+def test_friction_behind_a_payload_is_no_gain(plant, arm, loaded, at, names) -> None:
+    real = plant(at(2, lambda q, v, a, body: 3.0 * v + 2.0 * np.tanh(v / 1e-3)), robot=loaded)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    own = {("viscous_friction", arm.joints[2]), ("coulomb_friction", arm.joints[2])}
+    assert names(result) == {("payload", None), *own}
+
+
+@pytest.mark.slow
+def test_a_limit_behind_a_payload_on_a_tilted_base_hides_neither(plant, arm, at, names) -> None:
+    tilted = arm.with_payload(0.3, np.array([0.05, 0.08, 0.15]), 0.0012 * np.eye(3)).with_gravity(TILTED)
+    limit = 0.6 * float(np.abs(plant(robot=tilted).record(3).tau[:, 1]).max())
+    real = plant(at(1, lambda q, v, a, body: np.clip(body, -limit, limit) - body), robot=tilted)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("gravity_tilt", None), ("saturation", arm.joints[1])}
+
+
+@pytest.mark.slow
+def test_a_payload_heavier_than_the_arm_leaves_the_tilt_of_its_base_visible(plant, arm, loaded, names) -> None:
+    real = plant(robot=loaded.with_gravity(TILTED))
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("payload", None), ("gravity_tilt", None)}

@@ -1,0 +1,49 @@
+"""A disturbance near the band hides a law; the diagnosis finds it in a narrower band by itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.diagnose import diagnose
+
+FRICTION = 1.5  # [N m s/rad]
+RINGING, QUICK = 3.0, 5.0  # [N m], [Hz]
+
+
+@pytest.fixture(scope="module")
+def recordings(plant, at):
+    """Friction at one joint, under a ringing of its torque that comes and goes."""
+    real = plant(at(1, lambda q, v, a, t: FRICTION * v))
+
+    def ringing(seed: int):
+        r = real.record(seed)
+        swell = np.sin(2.0 * np.pi * 0.07 * r.time + seed) ** 2
+        tau = r.tau.copy()
+        tau[:, 1] += RINGING * swell * np.sin(2.0 * np.pi * QUICK * r.time + 0.8 * np.sin(0.9 * r.time))
+        return replace(r, tau=tau)
+
+    return [ringing(1), ringing(2)], [ringing(3)]
+
+
+def test_what_rings_near_the_band_does_not_hide_friction(recordings, arm, names) -> None:
+    fit, held = recordings
+    found = diagnose(fit, arm, held)
+    assert names(found) == {("viscous_friction", arm.joints[1])}
+    assert found.effects[0].value("Fv") == pytest.approx(FRICTION, rel=0.05)
+    assert found.verdict.conditioning["bandwidth_hz"] < QUICK
+
+
+def test_a_bandwidth_that_is_given_is_kept(recordings, arm) -> None:
+    fit, held = recordings
+    assert diagnose(fit, arm, held, bandwidth=12.0).verdict.conditioning["bandwidth_hz"] == 12.0
+
+
+def test_where_nothing_puzzles_one_band_is_enough(plant, arm, at, monkeypatch) -> None:
+    tried = []
+    monkeypatch.setattr("lagnet.diagnosis.reruns._narrower", lambda *given: tried.append(given) or [])
+    real = plant(at(1, lambda q, v, a, t: FRICTION * v))
+    diagnose([real.record(1)], arm, [real.record(2)])
+    assert not tried

@@ -1,0 +1,42 @@
+"""The ceiling knows what can be predicted, from what, and what can not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.diagnosis.posed import pose
+
+from lagnet.diagnosis.unexplained.predictability import predictability_of, signals_of
+
+
+@pytest.fixture(scope="module")
+def signals(plant, arm):
+    problem = pose(arm, plant().record(91), plant().record(92)).problem
+    return signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
+
+
+def column(signals, name):
+    return signals.table[:, signals.names.index(name)]
+
+
+def test_a_residual_of_two_joints_speeds_is_predicted_from_them(signals) -> None:
+    residuals = [np.sign(column(s, "v_0")) + np.tanh(column(s, "v_2")) for s in signals]
+    found = predictability_of(
+        signals[0], residuals[0], np.ones(len(residuals[0]), dtype=bool), signals[1], residuals[1], 0
+    )
+    assert found.share > 0.6
+    assert set(found.depends_on[:2]) <= {"v_0", "v_2", "history_0", "history_2"}
+
+
+def test_noise_is_not_predicted(signals) -> None:
+    rng = np.random.default_rng(1)
+    seen, unseen = (rng.standard_normal(len(s.table)) for s in signals)
+    found = predictability_of(signals[0], seen, np.ones(seen.size, dtype=bool), signals[1], unseen, 0)
+    assert found.share < 0.05
+    assert found.depends_on == ()
+
+
+def test_samples_that_do_not_count_teach_nothing(signals) -> None:
+    residuals = [column(s, "v_1") for s in signals]
+    nothing = np.zeros(residuals[0].size, dtype=bool)
+    assert predictability_of(signals[0], residuals[0], nothing, signals[1], residuals[1], 0).share == 0.0
