@@ -1,0 +1,1 @@
+"""Several parameter sets of one robot against recordings: which explains them better, and what they cannot decide."""

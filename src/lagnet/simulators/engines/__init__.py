@@ -1,0 +1,1 @@
+"""Engines in which lagnet runs what it has exported."""

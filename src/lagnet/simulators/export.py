@@ -1,0 +1,103 @@
+"""Write a corrected model for a simulator, and say of every effect what it became."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lagnet._version import __version__
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.rigid_body.robot import Robot
+from lagnet.rigid_body.writing import write_text
+from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.exporter import Exporter, Place
+from lagnet.simulators.measured import measured_errors
+
+FILE = "export.json"
+SCHEMA = "lagnet-export/1"
+
+
+@dataclass(frozen=True, eq=False)
+class Export:
+    """What was written.
+
+    Args:
+        exporter: for which simulator.
+        arm: the physics that was written.
+        files: the model first.
+        places: every named effect with its place, in the order of the model.
+    """
+
+    exporter: Exporter
+    arm: ArmPhysics
+    files: tuple[Path, ...]
+    places: tuple[tuple[NamedEffect, Place], ...]
+    verified: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def left_out(self) -> tuple[tuple[NamedEffect, Place], ...]:
+        """Effects that the simulator has no place for."""
+        return tuple(entry for entry in self.places if entry[1].status == "not_representable")
+
+
+def export_model(model: Robot | CorrectedModel, exporter: Exporter, folder: str | Path) -> Export:
+    """Write a model's files; `write_export_json` says what became of it.
+
+    Raises:
+        ModelError: the model has no bodies.
+    """
+    out = Path(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    arm = arm_physics(model)
+    files = exporter.write(arm, out)
+    return Export(exporter, arm, files, tuple((e, exporter.place(e)) for e in all_effects(model)))
+
+
+def all_effects(model: Any) -> tuple[NamedEffect, ...]:
+    """Named effects of a corrected model and of the corrected models that it stands on."""
+    if not isinstance(model, CorrectedModel):
+        return ()
+    return (*all_effects(model.nominal), *model.effects)
+
+
+def write_export_json(export: Export, folder: str | Path, verified: Mapping[str, Any] | None = None) -> Path:
+    """Writes `export.json`: for each effect the element it became and how exactly; and what was verified.
+
+    Returns:
+        The file.
+    """
+    path = Path(folder) / FILE
+    joints = export.arm.robot.joints
+    text = {
+        "schema": SCHEMA,
+        "lagnet": __version__,
+        "simulator": export.exporter.name,
+        "reads": export.exporter.reads,
+        "joints": list(joints),
+        "files": [p.name for p in export.files],
+        "effects": [_entry(export.exporter, e, p, joints) for e, p in export.places],
+        "friction_at_rest": {
+            "blur": [float(x) for x in export.arm.blur],
+            "unit": "rad/s",
+            "meaning": "speed within which the recordings blur the sign of motion; exported friction holds at rest",
+        },
+        "verify": None if verified is None else dict(verified),
+    }
+    write_text(path, json.dumps(text, indent=1, allow_nan=False) + "\n")
+    return path
+
+
+def _entry(exporter: Exporter, effect: NamedEffect, place: Place, joints: tuple[str, ...]) -> dict[str, Any]:
+    measured = measured_errors(exporter.name, effect.effect) if place.status != "not_representable" else {}
+    return {
+        "effect": effect.effect,
+        "joint": None if effect.joint is None else joints[effect.joint],
+        "parameters": effect.parameters(),
+        "status": place.status,
+        "element": place.element or None,
+        "note" if place.status != "not_representable" else "reason": place.note,
+        "measured_error": dict(measured) or None,
+    }

@@ -1,0 +1,1 @@
+"""One simulator or format a file."""

@@ -1,0 +1,224 @@
+"""Recorded commands or torques through a model in an engine, against what was measured.
+
+Three replays. *Held*: the recorded torque, with soft feedback to the recorded motion, so that the whole recording can
+be laid over the simulation; what the model lacks shows as a deviation that the feedback balances. *Free*: the recorded
+torque alone, from measured positions and speeds at many starts, for as long as it stays near: the horizon. *Commanded*:
+where the recording holds commands and the servo's gains are given, rolled out from the first sample alone.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lagnet.errors import LagnetError
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.robot import Robot
+from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.driven_arm import DrivenArm
+from lagnet.simulators.engines.engine import Engine
+from lagnet.simulators.engines.registry import ENGINES, FORMAT, engine_of
+from lagnet.simulators.recorded_drive import RecordedDrive, recorded_drives
+from lagnet.simulators.registry import exporter_named
+from lagnet.types import JointVector, Samples, Trajectory
+
+LONGEST_STEP = 1e-3  # [s] of an engine
+
+
+@dataclass(frozen=True)
+class Servo:
+    """A position controller: τ = kp (command − q) − kd v, or kd (command velocity − v) where that is recorded.
+
+    Args:
+        kp, kd: shape (dof,), [N m/rad], [N m s/rad].
+    """
+
+    kp: tuple[float, ...]
+    kd: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ReplaySettings:
+    """How recordings are replayed.
+
+    Args:
+        engine: a name of `ENGINES`.
+        rate: of the controller, which recorded signals are brought to [Hz].
+        bandwidth: of the feedback of held replays [rad/s].
+        tolerance: error of any joint at which a free rollout has left the recording [rad or m].
+        window: longest free rollout [s].
+        starts: free rollouts, spread over all recordings.
+        longest: of each recording that is replayed [s].
+        servo: gains of the position controller, for recordings of commands.
+    """
+
+    engine: str = "mujoco"
+    rate: float = 1000.0
+    bandwidth: float = 8.0
+    tolerance: float = 0.05
+    window: float = 2.0
+    starts: int = 20
+    longest: float = 30.0
+    servo: Servo | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """One stretch of one recording in an engine.
+
+    Args:
+        recording: its file name.
+        time: shape (n,), [s].
+        q_measured, q: shape (n, dof), recorded and simulated positions [rad].
+        commanded: whether commands drove it, else torques with feedback.
+    """
+
+    recording: str
+    time: Samples
+    q_measured: Trajectory
+    q: Trajectory
+    commanded: bool
+
+    def rmse(self) -> JointVector:
+        """Root mean square error, shape (dof,) [rad]."""
+        return np.sqrt(np.mean((self.q - self.q_measured) ** 2, axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Horizon:
+    """Free rollouts of recorded torques.
+
+    Args:
+        seconds: shape (starts,), time for which a rollout stayed within the tolerance; at most the window.
+        elapsed: shape (m,), time since the start [s].
+        error: shape (m, dof), root mean square error over the starts [rad]; nan after the shortest rollout.
+    """
+
+    seconds: np.ndarray
+    elapsed: Samples
+    error: Trajectory
+
+    @property
+    def median(self) -> float:
+        """Median time within the tolerance [s]."""
+        return float(np.median(self.seconds)) if self.seconds.size else float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """A model in an engine against recordings."""
+
+    engine: str
+    joints: tuple[str, ...]
+    runs: tuple[Replayed, ...]
+    horizon: Horizon | None
+    settings: ReplaySettings
+
+    def rmse(self) -> JointVector:
+        """Root mean square error over all runs, shape (dof,) [rad]."""
+        count = np.array([len(r.time) for r in self.runs])
+        return np.sqrt(np.average([r.rmse() ** 2 for r in self.runs], axis=0, weights=count))
+
+
+Mover = Callable[[JointVector, JointVector], Any]
+"""Makes an arm that moves, started at positions and speeds."""
+
+
+def replay(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> Replay:
+    """Run recordings through a model in an engine.
+
+    Raises:
+        LagnetError: an unknown engine, other joints, or commands without the servo's gains.
+        MissingExtraError: the engine is not installed.
+    """
+    if settings.engine not in ENGINES:
+        raise LagnetError(f"unknown engine {settings.engine!r}", where="--engine", choices=ENGINES)
+    arm, nominal = arm_physics(model), bare_robot(model)
+    exporter = exporter_named(FORMAT[settings.engine])
+    with tempfile.TemporaryDirectory() as folder:
+        exporter.write(arm, Path(folder))
+        step = min(LONGEST_STEP, 1.0 / settings.rate)
+        with engine_of(exporter.name, settings.engine, Path(folder), arm.robot.joints, step) as engine:
+            return _replayed(arm, nominal, recordings, settings, settings.engine, _starter(engine))
+
+
+def replay_reference(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> Replay:
+    """The same replay by the corrected model's own forward motion, without free rollouts."""
+    arm, nominal = arm_physics(model), bare_robot(model)
+    step = 1.0 / settings.rate
+
+    def mover(q: JointVector, v: JointVector) -> DrivenArm:
+        return DrivenArm(arm, step, q, v)
+
+    settings = replace(settings, starts=0)
+    return _replayed(arm, nominal, recordings, settings, "forward dynamics of the corrected model", mover)
+
+
+def bare_robot(model: Any) -> Robot:
+    """The robot under all corrections, whose inertia the feedback is scaled with."""
+    return bare_robot(model.nominal) if isinstance(model, CorrectedModel) else model
+
+
+def _starter(engine: Engine) -> Mover:
+    def mover(q: JointVector, v: JointVector) -> Engine:
+        engine.put(q, v)
+        return engine
+
+    return mover
+
+
+def _replayed(
+    arm: ArmPhysics, nominal: Robot, recordings: list[Recording], settings: ReplaySettings, name: str, mover: Mover
+) -> Replay:
+    drives = [d for r in recordings for d in recorded_drives(r, nominal, arm, settings)]
+    if not drives:
+        raise LagnetError("no recording is long enough to replay", next_step="give at least a second of motion")
+    runs = tuple(_run(drive, mover) for drive in drives)
+    torques = [d for d in drives if not d.commanded]
+    horizon = _horizon(torques, mover, settings) if torques and settings.starts else None
+    return Replay(name, arm.robot.joints, runs, horizon, settings)
+
+
+def _run(drive: RecordedDrive, mover: Mover) -> Replayed:
+    arm, q = mover(drive.q[0], drive.v[0]), np.empty_like(drive.q)
+    step = drive.step
+    for k in range(drive.time.size):
+        q[k], v = arm.read()
+        arm.advance(drive.torque(k, q[k], v), step)
+    return Replayed(drive.recording, drive.time, drive.q, q, drive.commanded)
+
+
+def _horizon(drives: list[RecordedDrive], mover: Mover, settings: ReplaySettings) -> Horizon:
+    """Free rollouts from starts spread over all stretches."""
+    most = round(settings.window * settings.rate)
+    room = np.array([max(d.time.size - most, 1) for d in drives])
+    at = np.linspace(0, room.sum() - 1, settings.starts).astype(int)
+    edges = np.concatenate([[0], np.cumsum(room)])
+    seconds, errors = [], []
+    for start in at:
+        i = int(np.searchsorted(edges, start, side="right") - 1)
+        error = _free(drives[i], int(start - edges[i]), most, mover, settings.tolerance)
+        left = np.flatnonzero(np.any(np.abs(error) > settings.tolerance, axis=1))
+        seconds.append((left[0] if left.size else len(error)) / settings.rate)
+        errors.append(error)
+    shortest = min(len(e) for e in errors)
+    spread = np.sqrt(np.mean([e[:shortest] ** 2 for e in errors], axis=0))
+    return Horizon(np.array(seconds), np.arange(shortest) / settings.rate, spread)
+
+
+def _free(drive: RecordedDrive, start: int, most: int, mover: Mover, tolerance: float) -> Trajectory:
+    """Error of a rollout of recorded torques alone, shape (steps, dof); it ends far outside the tolerance."""
+    arm, error = mover(drive.q[start], drive.v[start]), []
+    for k in range(start, min(start + most, drive.time.size)):
+        q, _ = arm.read()
+        error.append(q - drive.q[k])
+        if not np.all(np.abs(error[-1]) < 20.0 * tolerance):
+            break
+        arm.advance(drive.logged[k], drive.step)
+    return np.nan_to_num(np.array(error), nan=1e3, posinf=1e3, neginf=-1e3)
