@@ -1,0 +1,1 @@
+"""What changed, when, and whether it is more than temperature and load explain."""

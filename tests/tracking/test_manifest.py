@@ -1,0 +1,106 @@
+"""Manifests: what they state is read, and what is wrong is told in one line with its place."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+import pytest
+
+from lagnet.errors import LagnetError
+from lagnet.tracking.files import local_copy, matching, stamp
+from lagnet.tracking.manifest import read_manifest
+
+MAKE = '[[make]]\nname = "planar"\nrobot = "ur5"\n'
+
+
+def write(folder, text, files=("a/2026-01-05.csv", "a/2026-01-12.csv", "b.csv")):
+    for name in files:
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text("x")
+    (folder / "fleet.toml").write_text(text)
+    return folder / "fleet.toml"
+
+
+def test_globs_dates_and_temperatures(tmp_path):
+    text = MAKE + '[[robot]]\nname = "one"\n[[robot.recordings]]\nfiles = "a/*.csv"\ndate_in_name = "%Y-%m-%d"\n'
+    text += '[[robot]]\nname = "two"\nmake = "planar"\n[[robot.recordings]]\nfiles = "b.csv"\n'
+    text += "date = 2026-02-01T08:00:00Z\ntemperature = 31\n"
+    manifest = read_manifest(write(tmp_path, text))
+    assert [(r.robot, r.date) for r in manifest.recordings] == [
+        ("one", datetime(2026, 1, 5)), ("one", datetime(2026, 1, 12)), ("two", datetime(2026, 2, 1, 8)),
+    ]  # fmt: skip
+    assert manifest.recordings[-1].temperature == 31
+    assert manifest.robots == ("one", "two")
+    assert manifest.makes["planar"].robot == "ur5"
+
+
+def test_an_index_states_a_large_fleet(tmp_path):
+    (tmp_path / "index.csv").write_text(
+        "robot,make,file,date,temperature\none,planar,b.csv,2026-01-05,\ntwo,planar,a/2026-01-05.csv,2026-01-06,25.5\n"
+    )
+    manifest = read_manifest(write(tmp_path, 'index = "index.csv"\n' + MAKE))
+    assert [(r.robot, r.temperature) for r in manifest.recordings] == [("one", None), ("two", 25.5)]
+
+
+ROBOT = MAKE + '[[robot]]\nname = "one"\n[[robot.recordings]]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x = ", "not valid TOML"),
+        ("[[robots]]\n" + MAKE, "did you mean robot?"),
+        ("", "states no make"),
+        (MAKE, "states no recording"),
+        (MAKE.replace('"planar"', '"../up"'), "cannot be the name of a folder"),
+        (ROBOT + 'files = "none/*.csv"\ndate = 2026-01-05\n', "no file matches none/*.csv"),
+        (ROBOT + 'files = "b.csv"\n', "has no date"),
+        (ROBOT + 'files = "b.csv"\ndate = "soon"\n', "the date cannot be read"),
+        (ROBOT + 'files = "b.csv"\ndate_in_name = "%Y-%m-%d"\n', "holds no date like"),
+        (ROBOT + 'files = "b.csv"\ndate_in_name = "%Q"\n', "%Q is not known"),
+        (ROBOT + 'files = "a/*.csv"\ndate = 2026-01-05\n', "one date for 2 files"),
+        (ROBOT + 'files = "b.csv"\ndate = 2026-01-05\ntemperature = "warm"\n', "temperature must be a number"),
+        (
+            ROBOT.replace('name = "one"', 'name = "one"\nmake = "other"') + 'files = "b.csv"\ndate = 2026-01-05\n',
+            "not declared",
+        ),
+        (
+            ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n[[robot.recordings]]\nfiles = "b.csv"\ndate = 2026-01-06\n',
+            "stated twice",
+        ),
+        ("[settings]\nsearch = 'all'\n" + ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n', "search = 'all'"),
+        ("[settings]\nseed = 1.5\n" + ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n', "seed = 1.5"),
+    ],
+)
+def test_mistakes_are_told(tmp_path, text, words):
+    with pytest.raises(LagnetError) as error:
+        read_manifest(write(tmp_path, text))
+    assert words in str(error.value)
+    assert "fleet.toml" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        ("one,planar,,2026-01-05", "line 2"),
+        ("one,planar,b.csv,someday", "line 2"),
+        ("one,other,b.csv,2026-01-05", "not declared"),
+    ],
+)
+def test_mistakes_of_an_index_are_told_with_their_line(tmp_path, row, words):
+    (tmp_path / "index.csv").write_text(f"robot,make,file,date\n{row}\n")
+    with pytest.raises(LagnetError, match=words):
+        read_manifest(write(tmp_path, 'index = "index.csv"\n' + MAKE))
+
+
+def test_a_store_is_read_through_fsspec(tmp_path):
+    fsspec = pytest.importorskip("fsspec")
+    store = fsspec.filesystem("memory")
+    store.pipe("/fleet/a.csv", b"hello")
+    (address,) = matching(tmp_path, "memory://fleet/*.csv", "here")
+    assert stamp(address).startswith("5 ")
+    with local_copy(address) as path:
+        assert path.read_bytes() == b"hello"
+    assert not path.exists()
+    with pytest.raises(LagnetError, match="cannot be fetched"), local_copy("memory://fleet/none.csv"):
+        pass
