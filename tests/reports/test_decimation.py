@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagnet.diagnosis.evidence import HeldOutSeries
+from lagnet.diagnosis.verdict.report_data import HeldOutSeries
 from lagnet.reports.decimation import (
     PAGE_POINTS,
     broken,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.evidence import Skeleton
+from lagnet.diagnosis.verdict.report_data import Skeleton
 
 WIDTH, MARGIN, ARM_HEIGHT = 640.0, 34.0, 380.0
 CHARACTER, LEADER = 8.8, 44.0  # width of a character of a label, at most; room for a leader on one side

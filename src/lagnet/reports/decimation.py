@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from lagnet.diagnosis.evidence import HeldOutSeries
+from lagnet.diagnosis.verdict.report_data import HeldOutSeries
 
 SERIES_POINTS, CLOUD_POINTS = 4000, 3000  # of one joint
 PAGE_POINTS = 20_000  # of one kind on a page, all joints together: keeps eight joints under a megabyte

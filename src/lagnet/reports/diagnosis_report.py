@@ -6,18 +6,21 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lagnet.diagnosis.evidence import Evidence
+from lagnet.diagnosis.verdict.report_data import ReportData
 from lagnet.reports.findings import Findings
 from lagnet.reports.page import Section, write_page
 from lagnet.reports.sections import (
     abstentions,
     arm,
+    arm_view,
+    data_quality,
     fit,
     headline,
     joints,
     overlay,
     parameters,
     provenance,
+    rejected,
     rivals,
     unexplained,
     where,
@@ -27,12 +30,15 @@ from lagnet.reports.wording import counted, file_name
 # In order of reading. A new section is one file beside these, with its template, and one line here.
 SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
     headline.build,
+    data_quality.build,
     arm.build,
+    arm_view.build,
     fit.build,
     joints.build,
     overlay.build,
     where.build,
     rivals.build,
+    rejected.build,
     unexplained.build,
     abstentions.build,
     parameters.build,
@@ -40,7 +46,7 @@ SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
 )
 
 
-def write_report(verdict: Mapping[str, Any], evidence: Evidence, path: str | Path) -> Path:
+def write_report(verdict: Mapping[str, Any], evidence: ReportData, path: str | Path) -> Path:
     """Write the diagnosis as one self-contained HTML page.
 
     Args:

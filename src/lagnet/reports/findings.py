@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lagnet.diagnosis.evidence import Evidence, JointEvidence
+from lagnet.diagnosis.verdict.report_data import JointEvidence, ReportData
 
 WHOLE_ARM = "the whole arm"
 
@@ -21,7 +21,7 @@ class Findings:
     """
 
     verdict: Mapping[str, Any]
-    evidence: Evidence
+    evidence: ReportData
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.evidence import HeldOutSeries, JointEvidence
+from lagnet.diagnosis.verdict.report_data import HeldOutSeries, JointEvidence
 from lagnet.reports.decimation import broken, chosen_samples, cloud_budget, end_to_end, scattered, series_budget
 from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed, plain
 from lagnet.reports.wording import effect_words, file_name, listed

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lagnet.diagnosis.evidence import JointEvidence
+from lagnet.diagnosis.verdict.report_data import JointEvidence
 from lagnet.reports.decimation import scattered
 from lagnet.reports.figures import Figure, axis, colour, packed
 from lagnet.reports.wording import percent

@@ -10,7 +10,6 @@ import base64
 import hashlib
 import json
 import math
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +20,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from lagnet.files import write_whole
 from lagnet.reports.figures import Figure
 from lagnet.reports.wording import FILTERS
 
@@ -35,6 +35,7 @@ class Section:
         body: its rendered content.
         figures: the plots placed in it.
         half: whether it may share a row with its neighbour on a wide screen.
+        scripts: names of further scripts of the theme that it needs.
     """
 
     key: str
@@ -42,12 +43,20 @@ class Section:
     body: Markup
     figures: Sequence[Figure] = ()
     half: bool = False
+    scripts: Sequence[str] = ()
 
 
-def section(key: str, title: str, figures: Sequence[Figure] = (), half: bool = False, **context: Any) -> Section:
+def section(
+    key: str,
+    title: str,
+    figures: Sequence[Figure] = (),
+    half: bool = False,
+    scripts: Sequence[str] = (),
+    **context: Any,
+) -> Section:
     """Render the template `KEY.html.j2` of a section; its plots are at hand there by their keys as `figures`."""
     context = {**context, "figures": {figure.key: figure for figure in figures}}
-    return Section(key, title, render(f"{key}.html.j2", **context), figures, half)
+    return Section(key, title, render(f"{key}.html.j2", **context), figures, half, scripts)
 
 
 def render(template: str, **context: Any) -> Markup:
@@ -55,38 +64,47 @@ def render(template: str, **context: Any) -> Markup:
     return Markup(_environment().get_template(template).render(**context))
 
 
-def page(title: str, subtitle: str, sections: Sequence[Section]) -> str:
+def page(
+    title: str,
+    subtitle: str,
+    sections: Sequence[Section],
+    data: Mapping[str, Any] | None = None,
+    script: str | None = None,
+) -> str:
     """The page as one string of HTML.
 
     Args:
         title: heading and name of the page.
         subtitle: one line below it, e.g. the robot and the recordings.
         sections: the parts in order of reading; the headings make the table of contents.
+        data: plain values for the page's own script, by the id under which it finds them.
+        script: file of the theme that draws from them; none for pages whose plots are figures alone.
     """
     figures = {figure.key: figure.specification() for part in sections for figure in part.figures}
-    scripts = [*([_plotly()] if figures else []), _theme("report.js")]
+    own = dict.fromkeys([*(name for part in sections for name in part.scripts), *([script] if script else [])])
+    scripts = [*([_plotly()] if figures else []), _theme("report.js"), *map(_theme, own)]
     return render(
         "base.html.j2",
         title=title,
         subtitle=subtitle,
         sections=sections,
         style=Markup(_theme("report.css")),
-        data=json_for_script(figures),
+        data={"figures": json_for_script(figures)} | {k: json_for_script(v) for k, v in (data or {}).items()},
         scripts=[Markup(script) for script in scripts],
         policy=_policy(scripts),
     )
 
 
-def write_page(path: str | Path, title: str, subtitle: str, sections: Sequence[Section]) -> Path:
-    """Write the page in one step, so that an interrupted run leaves no half of it."""
-    path = Path(path)
-    draft = path.with_name(path.name + ".partial")
-    try:
-        draft.write_text(page(title, subtitle, sections), encoding="utf-8", newline="\n")
-        os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)
-    return path
+def write_page(
+    path: str | Path,
+    title: str,
+    subtitle: str,
+    sections: Sequence[Section],
+    data: Mapping[str, Any] | None = None,
+    script: str | None = None,
+) -> Path:
+    """Write the page in one step, so that an interrupted run leaves no half of it; see `page`."""
+    return write_whole(path, page(title, subtitle, sections, data, script))
 
 
 def json_for_script(content: Any) -> Markup:

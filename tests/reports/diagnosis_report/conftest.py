@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from lagnet.diagnosis.evidence import (
-    Contest,
-    Evidence,
+from lagnet.diagnosis.verdict.report_data import (
+    Comparison,
     FrictionLaw,
     HeldOutSeries,
     JointEvidence,
+    ReportData,
     ResidualByVelocity,
     SelectionStep,
     Skeleton,
@@ -36,7 +36,7 @@ class Case:
     """A verdict and the arrays behind it."""
 
     verdict: dict[str, Any]
-    evidence: Evidence
+    evidence: ReportData
 
 
 @dataclass(frozen=True)
@@ -166,14 +166,16 @@ def diagnosis_of(joints: list[Joint], n: int = 12000, skeleton: Skeleton | None 
             if value:
                 verdict["effects"].append(effect_entry(name, joint.name, value, unit, share))
     contests = tuple(
-        Contest(e["effect"], e["joint"], (("quadratic_drag", 61.2), ("time_delay", 118.0), ("stribeck_friction", 3.4)))
+        Comparison(
+            e["effect"], e["joint"], (("quadratic_drag", 61.2), ("time_delay", 118.0), ("stribeck_friction", 3.4))
+        )
         for e in verdict["effects"]
     )
     steps = tuple(
         SelectionStep(e["effect"], e["joint"], 0.5 * 0.6**i + 0.004) for i, e in enumerate(verdict["effects"])
     )
     settings = {"seed": 0, "blocks": 8, "bandwidth_hz": BANDWIDTH, "limits": {"odds": 1.0, "share": 0.01}}
-    evidence = Evidence(
+    evidence = ReportData(
         entries, contests, skeleton, steps, settings, {"lagnet": "0.1.0", "numpy": "2.4.6"}, {"runs/fit_0.csv": SHA}
     )
     return Case(verdict, evidence)
@@ -237,7 +239,7 @@ def abstentions_only() -> Case:
 
 def verdict_alone() -> Case:
     """A verdict without any of the arrays."""
-    return Case(six_joints().verdict, Evidence())
+    return Case(six_joints().verdict, ReportData())
 
 
 CASES: dict[str, Callable[[], Case]] = {

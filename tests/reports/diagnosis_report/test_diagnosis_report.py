@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
-from lagnet.diagnosis.evidence import Evidence, JointEvidence
+from lagnet.diagnosis.verdict.report_data import JointEvidence, ReportData
 from lagnet.reports.diagnosis_report import write_report
 
 MEGABYTE = 1e6
@@ -122,13 +122,13 @@ def test_few_effects_are_given_with_their_values_and_a_slide_in_newtons(one_slid
 
 
 def test_absent_parts_leave_no_empty_sections(six, tmp_path):
-    page = write_report(six.verdict, Evidence(), tmp_path / "report.html").read_text(encoding="utf-8")
+    page = write_report(six.verdict, ReportData(), tmp_path / "report.html").read_text(encoding="utf-8")
     assert set(figures_in(page)) == {"fit-bars", "rival-bars"}
     assert "geometry of this model is not known" in page
 
 
 def test_partial_evidence_is_taken_as_far_as_it_goes(six, tmp_path):
-    bare = Evidence(joints=(JointEvidence("elbow", noise_rms=0.1),), settings={"nested": {"deep": (1, 2)}})
+    bare = ReportData(joints=(JointEvidence("elbow", noise_rms=0.1),), settings={"nested": {"deep": (1, 2)}})
     page = write_report(six.verdict, bare, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "nested.deep" in page
 
@@ -142,7 +142,9 @@ def test_hostile_names_stay_words_in_page_and_plots(six, tmp_path):
         else entry
         for entry in six.evidence.joints
     )
-    evidence = Evidence(joints, settings={HOSTILE: HOSTILE}, versions={HOSTILE: HOSTILE}, checksums={HOSTILE: HOSTILE})
+    evidence = ReportData(
+        joints, settings={HOSTILE: HOSTILE}, versions={HOSTILE: HOSTILE}, checksums={HOSTILE: HOSTILE}
+    )
     page = write_report(verdict, evidence, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<script>document" not in page
     assert "<img" not in page
@@ -154,7 +156,7 @@ def test_numbers_that_are_not_finite_do_not_break_the_page(six, tmp_path):
     measured = np.array(entry.held_out.measured)
     measured[10:20] = np.nan
     series = replace(entry.held_out, measured=measured)
-    evidence = Evidence((replace(entry, held_out=series, noise_rms=float("nan"), ceiling_share=float("nan")),))
+    evidence = ReportData((replace(entry, held_out=series, noise_rms=float("nan"), ceiling_share=float("nan")),))
     page = write_report(six.verdict, evidence, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "joint-0-time" in figures_in(page)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.side_by_side import SideBySide
+from lagnet.diagnosis.nominal.log_alignment import SideBySide
 from lagnet.reports.decimation import extremes
 from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
 from lagnet.reports.findings import Findings

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from lagnet.diagnosis.evidence import Contest
+from lagnet.diagnosis.verdict.report_data import Comparison
 from lagnet.reports.figures import Figure, Trace, axis, colour, names_axis, plain
 from lagnet.reports.findings import Findings, place
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import effect_words, number, wrapped
 
 TICKS = (-1000, -100, -10, -3, -1, 0, 1, 3, 10, 30, 100, 300, 1000, 3000)
-Best = tuple[Contest, str, float]  # a contest with its strongest rival and the odds over it
+Best = tuple[Comparison, str, float]  # a contest with its strongest rival and the odds over it
 
 
 def build(findings: Findings) -> Section | None:
@@ -33,13 +33,15 @@ def build(findings: Findings) -> Section | None:
     )
 
 
-def _contests(findings: Findings) -> list[Contest]:
+def _contests(findings: Findings) -> list[Comparison]:
     """The contests of the evidence, or, without it, each effect against the best rival that the verdict names."""
-    if findings.evidence.contests:
-        return list(findings.evidence.contests)
+    if findings.evidence.comparisons:
+        return list(findings.evidence.comparisons)
     best = ((effect, effect["evidence"]) for effect in findings.effects)
     return [
-        Contest(effect["effect"], effect["joint"], ((evidence["best_rival"], evidence["log10_odds_over_best_rival"]),))
+        Comparison(
+            effect["effect"], effect["joint"], ((evidence["best_rival"], evidence["log10_odds_over_best_rival"]),)
+        )
         for effect, evidence in best
         if evidence["best_rival"] is not None and evidence["log10_odds_over_best_rival"] is not None
     ]
@@ -63,7 +65,7 @@ def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
     return Figure("rival-bars", traces, "log10 odds of each effect over its rivals", layout, height)
 
 
-def _words(contest: Contest, rival: str, _: float) -> list[str]:
+def _words(contest: Comparison, rival: str, _: float) -> list[str]:
     effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 30)
     return [*effect, f"over {effect_words(rival)}"]
 

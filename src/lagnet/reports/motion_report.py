@@ -1,0 +1,54 @@
+"""The report of a diagnosis on motion: where rollouts of the commands leave the recorded motion, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
+from lagnet.diagnosis.verdict.report_data import ReportData
+from lagnet.reports.findings import Findings
+from lagnet.reports.page import Section, write_page
+from lagnet.reports.sections import (
+    abstentions,
+    motion_curves,
+    motion_errors,
+    motion_headline,
+    motion_rest,
+    parameters,
+    where,
+)
+from lagnet.reports.wording import counted, file_name
+
+# In order of reading. A new section is one file beside these, with its template, and one line here.
+OF_MOTION: tuple[Callable[[Mapping[str, Any], MotionDiagnosis], Section | None], ...] = (
+    motion_headline.build,
+    motion_errors.build,
+    motion_curves.build,
+    motion_rest.build,
+)
+OF_VERDICT = (where.build, parameters.build, abstentions.build)
+
+
+def write_motion_report(diagnosis: MotionDiagnosis, path: str | Path) -> Path:
+    """Write the diagnosis as one self-contained HTML page.
+
+    Returns:
+        The file that was written.
+    """
+    verdict = diagnosis.verdict.to_dict()
+    findings = Findings(verdict, ReportData())
+    built = [build(verdict, diagnosis) for build in OF_MOTION] + [build(findings) for build in OF_VERDICT]
+    parts = [part for part in built if part is not None]
+    return write_page(path, "Commands and motion", _subtitle(verdict), parts)
+
+
+def _subtitle(verdict: Mapping[str, Any]) -> str:
+    recordings = verdict["recordings"]
+    held_out = [recording for recording in recordings if recording["role"] == "holdout"]
+    seconds = sum(recording["duration_s"] for recording in recordings)
+    return (
+        f"{file_name(verdict['nominal']['source'])} against {counted(len(recordings), 'recording')} "
+        f"({seconds:.0f} s, {len(held_out)} held out), on motion"
+    )

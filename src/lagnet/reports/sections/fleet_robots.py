@@ -1,0 +1,11 @@
+"""The table of robots: a cell for each joint, filtered and sorted by the page itself."""
+
+from __future__ import annotations
+
+from lagnet.reports.fleet import Fleet
+from lagnet.reports.page import Section, section
+
+
+def build(fleet: Fleet) -> Section:
+    """The frame of the table; its rows come from the page's data."""
+    return section("fleet_robots", "Robots and joints")
