@@ -99,7 +99,9 @@ def test_commands_and_options_exist(page: Path) -> None:
         assert isinstance(command, typer.core.TyperGroup) or set(used) <= known, f"{page_id(page)}: lagnet {name}{rest}"
 
 
-@pytest.mark.parametrize("script", ["make_catalogue.py", "make_confusion.py", "fill_figures.py"])
+@pytest.mark.parametrize(
+    "script", ["make_catalogue.py", "make_simulators.py", "make_confusion.py", "make_limits.py", "fill_figures.py"]
+)
 def test_what_is_generated_is_current(script: str) -> None:
     done = subprocess.run(
         [sys.executable, str(ROOT / "docs" / script), "--check"], capture_output=True, text=True, check=False
@@ -112,6 +114,12 @@ def test_every_source_of_an_effect_is_a_reference() -> None:
 
     keys = anchors(ROOT / "docs" / "references.md")
     assert {e.source for e in CATALOGUE.values()} <= keys
+
+
+def test_every_source_of_a_rule_is_a_reference() -> None:
+    from lagnet.diagnosis.rules.catalogue import RULES
+
+    assert {r.source for r in RULES if r.source} <= anchors(ROOT / "docs" / "references.md")
 
 
 def test_the_picture_in_the_readme_is_a_picture_of_modest_size() -> None:

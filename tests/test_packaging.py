@@ -86,7 +86,7 @@ def test_no_recording_of_others_and_no_pickle_is_tracked() -> None:
     """Recordings made by scripts of this project may stand in tests and data, small ones."""
     large = [p for p in tracked() if p.name.endswith(RECORDINGS) and p.stat().st_size > 1_000_000]
     code = [p for p in tracked() if p.suffix in (".pkl", ".pickle", ".pt", ".h5")]
-    known = _checksums(json.loads((ROOT / "src/lagnet/recordings/manifest.json").read_text(encoding="utf-8")))
+    known = _checksums(json.loads((ROOT / "src/lagnet/recordings/datasets/manifest.json").read_text(encoding="utf-8")))
     assert known
     copies = [p for p in tracked() if p.name.endswith(RECORDINGS) and _sha256(p) in known]
     assert (large, code, copies) == ([], [], [])
@@ -127,7 +127,7 @@ def test_wheel_holds_what_the_package_reads(wheel: set[str]) -> None:
         if p.is_file() and "__pycache__" not in p.parts and p.suffix != ".pyc"
     }
     assert needed <= wheel
-    assert {"lagnet/recordings/manifest.json", "lagnet/reports/templates/base.html.j2"} <= wheel
+    assert {"lagnet/recordings/datasets/manifest.json", "lagnet/reports/templates/base.html.j2"} <= wheel
     assert {"lagnet/reports/theme/report.css", "lagnet/reports/theme/report.js"} <= wheel
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagnet.cli.main import main
-from lagnet.recordings.derived import EMPS_URDF
+from lagnet.recordings.datasets.derived import EMPS_URDF
 
 TIME = 0.01 * np.arange(100)
 GOOD = ["time,q_0,tau_0", *(f"{t:.4f},{0.1 * np.sin(t):.6f},{np.cos(t):.6f}" for t in TIME)]

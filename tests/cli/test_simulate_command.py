@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("pybullet")
 
 from lagnet.cli.main import main
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.load import load_recording
 
 SHORT = ["--trajectories", "2", "--duration", "1", "--seed", "3"]
 EFFECTS = '[[effect]]\nname = "coulomb_friction"\njoint = "elbow_joint"\nFc = 1.5\n'

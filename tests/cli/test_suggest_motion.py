@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lagnet.cli.main import main
-from lagnet.recordings.load import load_recording
+from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm_urdf

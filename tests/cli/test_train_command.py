@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lagnet.cli.main import main
-from lagnet.models.saving import load_model
+from lagnet.models.files.saving import load_model
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 from pathlib import Path
@@ -38,10 +39,12 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Hold a model or robot against physics; exit code 1 when a check fails."""
+    from lagnet.cli.console import not_negative
     from lagnet.plausibility.settings import CheckSettings
     from lagnet.plausibility.suite import check
-    from lagnet.recordings.load import load_recording
+    from lagnet.recordings.loading.load import load_recording
 
+    not_negative(seed, "--seed")
     settings = CheckSettings(limits=_limits(limit or []), skip=tuple(skip or ()), vertical_base=vertical_base)
     loaded, *rest = load_models([model, reference] if reference else [model], hold)
     believed = rest[0] if rest else None
@@ -80,6 +83,8 @@ def _limits(words: list[str]) -> dict[str, float]:
         name, _, value = word.partition("=")
         try:
             limits[name.strip()] = float(value)
+            if math.isnan(limits[name.strip()]):
+                raise ValueError
         except ValueError:
             raise LagnetError(
                 f"{word!r} is no limit", where="--limit", next_step="write NAME=VALUE, e.g. gravity_is_gradient=1e-4"

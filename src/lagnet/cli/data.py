@@ -1,4 +1,4 @@
-"""`lagnet data list | fetch NAME`."""
+"""`lagnet data list | fetch NAME | inspect FILE`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 import typer
 
 from lagnet.cli.main import COMMANDS
-from lagnet.recordings.datasets import data_sets, fetch
-from lagnet.recordings.derived import RECIPES
+from lagnet.recordings.datasets.derived import RECIPES
+from lagnet.recordings.datasets.fetch import data_sets, fetch
 
 app = typer.Typer(help=COMMANDS["data"], no_args_is_help=True, add_completion=False, rich_markup_mode="markdown")
 
@@ -37,6 +37,25 @@ def fetch_data_set(
         print(path)
     for note in fetched.notes:
         print(f"note: {note}", file=sys.stderr)
+
+
+@app.command("inspect")
+def inspect_log(
+    file: Path = typer.Argument(help="Recording, ROS bag, or folder of a LeRobot data set or a motion."),
+    robot: str | None = typer.Option(None, help="URDF or MJCF, a name such as ur5, or a folder of train or diagnose."),
+    columns: Path | None = typer.Option(None, help="Mapping file (TOML) to read it by."),
+    out: Path | None = typer.Option(None, help="Mapping file to write; else FILE's name with .columns.toml."),
+) -> None:
+    """Say what a log holds, what its effort column most likely is, and write the mapping file to edit."""
+    from lagnet.cli.console import say
+    from lagnet.cli.inspection import inspect_file
+
+    lines, text = inspect_file(file, robot, columns, _show if sys.stderr.isatty() else None)
+    for line in lines:
+        say(line)
+    path = out or Path(f"{file.name or 'log'}.columns.toml")
+    path.write_text(text, encoding="utf-8")
+    say(f"mapping file to edit: {path}")
 
 
 def _show(name: str, done: int, expected: int | None) -> None:

@@ -35,7 +35,7 @@ def command(
     from lagnet.cli.console import say
     from lagnet.decomposition.decompose import decompose
     from lagnet.decomposition.writing import write_decomposition
-    from lagnet.recordings.load import load_recording
+    from lagnet.recordings.loading.load import load_recording
     from lagnet.reports.decomposition_report import write_decomposition_report
 
     constants = [float(x) for x in torque_constant.split(",")] if torque_constant else None

@@ -19,8 +19,8 @@ def command(
     from lagnet.cli.envelope import compare, seal
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.writing import write_diagnosis
-    from lagnet.models.loading import load_any
-    from lagnet.recordings.load import load_recording
+    from lagnet.models.files.loading import load_any
+    from lagnet.recordings.loading.load import load_recording
     from lagnet.recordings.writing import write_recording
     from lagnet.reports.diagnosis_report import write_report
     from lagnet.simulation.simulate import SimulationSettings, trajectories, truth

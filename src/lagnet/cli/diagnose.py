@@ -43,6 +43,21 @@ def command(
     suggest_motion: Annotated[
         bool, typer.Option("--suggest-motion", help="Write a motion to record next, which breaks ties: see docs.")
     ] = False,
+    route: Annotated[
+        str | None, typer.Option(help="torque or motion; else motion where commands were recorded and no torque.")
+    ] = None,
+    actuator: Annotated[
+        Path | None, typer.Option(help="Nominal servos (TOML) of the motion route; else the MJCF's, else estimated.")
+    ] = None,
+    gains: Annotated[
+        str | None,
+        typer.Option(
+            help="Motion route: comma-separated gains of the recordings, then of --holdout, over the servo's."
+        ),
+    ] = None,
+    mcap: Annotated[
+        Path | None, typer.Option(help="Write torques and verdict for Foxglove, PlotJuggler and Rerun to this file.")
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Say where recordings and robot differ, and name the physics that was left out."""
@@ -53,25 +68,40 @@ def command(
         )
     if simulated and hold:
         raise LagnetError("--hold holds joints of --robot; a simulator's recordings have those that they have")
-    from lagnet.cli.console import numbers, say
+    from lagnet.cli.console import above_zero, not_negative, numbers, say
+    from lagnet.cli.motion import diagnose_on_motion, route_of
     from lagnet.cli.simulated import nominal_from
     from lagnet.diagnosis.diagnose import diagnose
-    from lagnet.diagnosis.side_by_side import lay_side_by_side
+    from lagnet.diagnosis.nominal.log_alignment import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
-    from lagnet.recordings.load import load_recording
+    from lagnet.recordings.loading.load import load_recording
+    from lagnet.recordings.loading.opening import recordings_in
     from lagnet.reports.diagnosis_report import write_report
 
+    above_zero(bandwidth, "--bandwidth")
+    not_negative(seed, "--seed")
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
     model, missed, of_simulator = (
         (*load_models([robot], hold), None, []) if robot else nominal_from(simulated or [], columns, constants, seed)
     )
     read = [
-        [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in paths]
+        [
+            load_recording(p, robot=model, columns=columns, torque_constant=constants)
+            for given in paths
+            for p in recordings_in(given)
+        ]
         for paths in (recordings, holdout or [])
     ]
     say(f"{sum(map(len, read))} recordings read, diagnosing")
+    if robot and route_of(route, [*read[0], *read[1]]) == "motion":
+        factors = numbers(gains, "--gains") if gains else None
+        return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     write_diagnosis(result, out)
+    if mcap:
+        from lagnet.cli.mcap import write_mcap_of
+
+        say(f"MCAP: {write_mcap_of(result, mcap)}")
     evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
     write_report(result.verdict.to_dict(), evidence, out / "report.html")
     for effect in result.effects:
@@ -90,8 +120,8 @@ def command(
 def _suggest(result: Diagnosis, out: Path, seed: int) -> None:
     """Searches the motion to record next and writes it beside the verdict."""
     from lagnet.cli.console import say
-    from lagnet.diagnosis.suggested_motion import suggest_motion
-    from lagnet.diagnosis.suggestion_files import MOTION, words_of, write_suggestion
+    from lagnet.experiment_design.suggest_motion import suggest_motion
+    from lagnet.experiment_design.writing import MOTION, words_of, write_suggestion
 
     say("searching for the motion that settles most of what is open")
     suggested = suggest_motion(result, seed)

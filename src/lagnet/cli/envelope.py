@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from lagnet.files import write_whole
+
 FILE = "envelope.json"
 SHOWN = 4  # parameters of an effect that are compared
 
@@ -15,7 +17,7 @@ SHOWN = 4  # parameters of an effect that are compared
 def seal(truth: Mapping[str, Any], folder: Path) -> str:
     """Writes the truth and gives its sha256."""
     text = json.dumps(truth, indent=1) + "\n"
-    (folder / FILE).write_text(text, encoding="utf-8")
+    write_whole(folder / FILE, text)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -28,7 +28,11 @@ COMMANDS = {
     "decompose": "Split the torque into inertial, Coriolis, gravity and residual parts.",
     "check": "Hold a model or robot against physics; exit code 1 when a check fails.",
     "diagnose": "Say where recordings and robot differ, and name the physics that was left out.",
-    "data": "List and fetch the public data sets that tests and studies use.",
+    "export": "Write a corrected model for MuJoCo, PyBullet, URDF, SDF, USD, Drake or Isaac Lab.",
+    "replay": "Run recordings through a model in MuJoCo or PyBullet, before and after correction.",
+    "compare": "Say which of several parameter sets explains recordings better, joint by joint.",
+    "track": "Follow the physics of many robots over time: what changed, when, and what is out of family.",
+    "data": "Say what a log holds; list and fetch the public data sets that tests and studies use.",
 }
 DONE, CHECK_FAILED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 3, 70
 HELP = (

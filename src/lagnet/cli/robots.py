@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ def held_joints(text: str | None) -> dict[str, float]:
         name, _, position = part.strip().rpartition("=")
         try:
             held[name] = float(position)
+            name = name if math.isfinite(held[name]) else ""
         except ValueError:
             name = ""
         if not name:
@@ -39,7 +41,7 @@ def load_models(specs: Sequence[str], hold: str | None) -> list[Any]:
     Raises:
         LagnetError: joints to hold, and folders alone, whose models have the joints they were made with.
     """
-    from lagnet.models.loading import load_any
+    from lagnet.models.files.loading import load_any
 
     held, folders = held_joints(hold), [Path(spec).is_dir() for spec in specs]
     if all(folders):

@@ -33,8 +33,8 @@ def command(
     ] = None,
 ) -> None:
     """Move a robot under torque control, with known effects added, and write recordings; the truth is kept apart."""
-    from lagnet.cli.console import say
-    from lagnet.recordings.load import load_recording
+    from lagnet.cli.console import above_zero, not_negative, say
+    from lagnet.recordings.loading.load import load_recording
     from lagnet.rigid_body.robot import load_description
     from lagnet.simulation.effects_file import read_effects
     from lagnet.simulation.follow import follow
@@ -44,6 +44,8 @@ def command(
     from lagnet.simulation.simulate import trajectories as simulated
     from lagnet.simulation.writing import TRUTH, check_free, write_simulation
 
+    above_zero(step_rate, "--step-rate")
+    not_negative(seed, "--seed")
     check_free(out)
     model = load_description(robot, held_joints(hold))
     injected = read_effects(effects, model) if effects is not None else ()

@@ -18,8 +18,8 @@ def nominal_from(
     paths: Sequence[Path], columns: Path | None, constants: list[float] | None, seed: int
 ) -> tuple[Any, np.ndarray, list[Recording]]:
     """The learned model, the torque that it is known to miss, shape (dof,) [N m], and the simulated recordings."""
-    from lagnet.diagnosis.from_simulated import learn_nominal
-    from lagnet.recordings.load import load_recording
+    from lagnet.diagnosis.nominal.from_recordings import learn_nominal
+    from lagnet.recordings.loading.load import load_recording
 
     read = [load_recording(path, columns=columns, torque_constant=constants) for path in paths]
     say(f"learning the simulator's arm from {len(read)} recordings")

@@ -42,12 +42,16 @@ def command(
     ] = None,
 ) -> None:
     """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
-    from lagnet.cli.console import say
-    from lagnet.recordings.load import load_recording
+    from lagnet.cli.console import above_zero, not_negative, say
+    from lagnet.recordings.loading.load import load_recording
     from lagnet.training.cores import let_jax_see_cores
     from lagnet.training.stages import stage_files
     from lagnet.training.train import train
 
+    above_zero(minutes, "--minutes")
+    above_zero(steps, "--steps")
+    not_negative(penalty, "--penalty")
+    not_negative(seed, "--seed")
     let_jax_see_cores(cores)
     read = [load_recording(path, columns=columns) for path in recordings]
     judged = [load_recording(path, columns=columns) for path in holdout or []]
@@ -64,6 +68,9 @@ def command(
         checkpoint=checkpoint,
         progress=lambda report: say(report.line()) if report.step % 500 == 0 else None,
     )
+    if fit.stats.get("interrupted") and holds_finished_model(out):
+        say(f"interrupted: the finished model in {out} was kept as it is; the same command goes on from here")
+        raise typer.Exit(INTERRUPTED)
     fit.model.save(out)
     for joint, error in zip(fit.model.joints, fit.stats.get("held_out_error") or (), strict=False):
         say(f"{joint}: held-out torque error {100 * error:.3g} % of its variance")
@@ -73,6 +80,17 @@ def command(
         raise typer.Exit(INTERRUPTED)
     for file in (checkpoint, *stage_files(checkpoint)):
         file.unlink(missing_ok=True)
+
+
+def holds_finished_model(folder: Path) -> bool:
+    """Whether a folder holds a model whose training came to its end."""
+    from lagnet.errors import ModelError
+    from lagnet.models.files.saving import load_model
+
+    try:
+        return not load_model(folder).training.get("interrupted", False)
+    except ModelError:
+        return False
 
 
 def _how(steps: int | None, penalty: float | None) -> TrainingSettings:

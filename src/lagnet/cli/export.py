@@ -1,0 +1,61 @@
+"""`lagnet export`: a corrected model written for a simulator."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lagnet.errors import LagnetError
+
+
+def command(
+    corrected: Annotated[
+        str, typer.Argument(help="A folder written by diagnose, or a URDF, MJCF or name such as ur5.")
+    ],
+    to: Annotated[str, typer.Option("--to", help="mjcf, urdf, sdf, usd, pybullet, drake or isaaclab.")],
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("export"),
+    verify: Annotated[
+        list[Path] | None, typer.Option(help="Recordings to simulate in that engine (mjcf, pybullet).")
+    ] = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
+    ] = None,
+    kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
+    kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
+) -> None:
+    """Write a corrected model for a simulator, and say of every effect what it became."""
+    from lagnet.cli.console import say
+    from lagnet.cli.replay import servo_of
+    from lagnet.models.files.loading import load_any
+    from lagnet.recordings.loading.load import load_recording
+    from lagnet.simulators.before_after import verify as verified_by
+    from lagnet.simulators.export import export_model, write_export_json
+    from lagnet.simulators.registry import exporter_named
+    from lagnet.simulators.replay import ReplaySettings
+
+    exporter = exporter_named(to)
+    if verify and exporter.engine is None:
+        raise LagnetError(
+            f"no engine here runs {to}", where="--verify", next_step="verify with --to mjcf or --to pybullet"
+        )
+    model = load_any(corrected)
+    written = export_model(model, exporter, out)
+    result = None
+    if verify and exporter.engine is not None:
+        settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd))
+        read = [load_recording(p, robot=model, columns=columns) for p in verify]
+        result = verified_by(model, read, settings)
+    listed = write_export_json(written, out, result)
+    joints = written.arm.robot.joints
+    for effect, place in written.places:
+        where = "whole arm" if effect.joint is None else joints[effect.joint]
+        words = place.element or place.note
+        say(f"{effect.effect} ({where}): {place.status.replace('_', ' ')}: {words}")
+    if result is not None:
+        for i, joint in enumerate(joints):
+            after = (result["after"] or result["before"])["rmse"][i]
+            before, gap = result["before"]["rmse"][i], result["engine_against_corrected_rmse"][i]
+            say(f"{joint}: error in {to} {before:.3g} before, {after:.3g} after; to the corrected model {gap:.2g} rad")
+    say(f"written: {written.files[0]} and {listed}")

@@ -1,0 +1,96 @@
+"""`lagnet export`, `lagnet replay` and `lagnet compare` from files to files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lagnet.cli.main import BAD_INPUT, DONE, main
+from lagnet.models.corrected.folder import save_corrected
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.recordings.recording import Recording
+from lagnet.recordings.writing import write_recording
+from lagnet.rigid_body.random_arm import random_arm
+from lagnet.simulators.arm_physics import arm_physics
+from lagnet.simulators.driven_arm import DrivenArm
+from lagnet.simulators.reference_cases import case_values
+from lagnet.simulators.round_trip import smooth_motion
+from lagnet.simulators.tracking_control import tracking
+
+ARM = random_arm(2, seed=3, kinds=("revolute",), fixed=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A corrected model, and a recording of the arm that it describes."""
+    out = tmp_path_factory.mktemp("simulators")
+    effects = [("viscous_friction", 0), ("coulomb_friction", 1), ("time_delay", 1)]
+    values = {"time_delay": {"T": 0.004}}
+    named = tuple(NamedEffect(n, j, values.get(n, case_values(n))) for n, j in effects)
+    model = CorrectedModel(ARM, named, np.full(2, 1e-3))
+    save_corrected(model, out / "corrected")
+    ARM.write_urdf(out / "arm.urdf")
+    heavy = ARM.inertial_parameters() * np.array([[1.0], [1.3]])
+    ARM.with_inertial_parameters(heavy).write_urdf(out / "heavy.urdf")
+    time, motion = smooth_motion(3.0, 2)
+    control = tracking(ARM, time, motion, 20.0)
+    q, tau = control.run(DrivenArm(arm_physics(model), 1e-3, control.q[0], control.v[0]))
+    late = np.vstack([np.repeat(tau[:1], 4, axis=0), tau[:-4]])[:, 1]
+    tau = np.column_stack([tau[:, 0], late])
+    write_recording(Recording(time[::4], q[::4], tau[::4], ARM.joints), out / "run.csv")
+    return out
+
+
+def test_export_verifies_in_the_engine(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["export", str(folder / "corrected"), "--to", "mjcf", "--out", str(tmp_path)]
+    assert main([*words, "--verify", str(folder / "run.csv")]) == DONE
+    text = json.loads((tmp_path / "export.json").read_text(encoding="utf-8"))
+    before, after = (np.array(text["verify"][side]["rmse"]) for side in ("before", "after"))
+    assert np.linalg.norm(after) < 0.1 * np.linalg.norm(before)
+    assert np.max(text["verify"]["engine_against_corrected_rmse"]) < 0.1 * np.max(before)
+    said = capsys.readouterr().out
+    assert "coulomb_friction (joint_1): exact: joint frictionloss" in said
+    assert (tmp_path / "model.xml").is_file()
+
+
+def test_replay_writes_before_and_after(folder: Path, tmp_path: Path) -> None:
+    words = ["replay", str(folder / "run.csv"), "--robot", str(folder / "corrected"), "--out", str(tmp_path)]
+    assert main(words) == DONE
+    text = json.loads((tmp_path / "replay.json").read_text(encoding="utf-8"))
+    assert text["error_ratio"] < 0.1
+    assert text["after"]["horizon_median_s"] >= text["before"]["horizon_median_s"]
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Your simulator, before and after" in page
+    assert (tmp_path / "replay.parquet").is_file()
+
+
+def test_compare_finds_the_right_set(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["compare", str(folder / "run.csv"), "--out", str(tmp_path)]
+    assert main([*words, "--robot", str(folder / "arm.urdf"), "--robot", str(folder / "heavy.urdf")]) == DONE
+    text = json.loads((tmp_path / "compare.json").read_text(encoding="utf-8"))
+    assert all(joint["best"].endswith("arm.urdf") for joint in text["joints"])
+    assert "base parameters" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["export", "X", "--to", "gazebo"], "no exporter writes for 'gazebo'"),
+        (["export", "X", "--to", "sdf", "--verify", "R"], "no engine here runs sdf"),
+        (["export", "X", "--to", "mjcf", "--verify", "R", "--kp", "1,1"], "a servo has both gains"),
+        (["replay", "R", "--robot", "X", "--engine", "gazebo"], "unknown engine 'gazebo'"),
+        (["replay", "R", "--robot", "X", "--tolerance", "0"], "above zero"),
+        (["compare", "R", "--robot", "X"], "one model is nothing to compare"),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    words: list[str], said: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    named = {"X": str(folder / "corrected"), "R": str(folder / "run.csv")}
+    assert main([named.get(w, w) for w in words] + ["--out", str(tmp_path)]) == BAD_INPUT
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1
+    assert said in lines[0]

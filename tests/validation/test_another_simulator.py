@@ -1,0 +1,81 @@
+"""MuJoCo's plants are the arms that the diagnosis is given, but for what is hidden in them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from validation.another_simulator.hidden import ALONE, SIZES, UNLISTED, Hidden, drawn
+from validation.another_simulator.motions import drawn as motion
+from validation.another_simulator.mujoco_arm import MujocoArm
+from validation.another_simulator.plants import plant
+from validation.another_simulator.study import figures, judge
+
+from lagnet.effects.catalogue import CATALOGUE
+from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
+
+SAME = 1e-6  # of the largest torque: two libraries, one arm
+SECONDS = 4.0
+SHOWN = 0.005  # of the usual torque: least that something hidden changes
+
+
+@pytest.fixture(scope="module")
+def urdf() -> str:
+    return random_arm_urdf(3, seed=5, kinds=("revolute",))
+
+
+@pytest.fixture(scope="module")
+def free(urdf) -> MujocoArm:
+    return MujocoArm(urdf)
+
+
+@pytest.fixture(scope="module")
+def reference():
+    limits = np.full(3, 1.5)
+    return motion("sines", -limits, limits, limits, SECONDS, np.random.default_rng(0))
+
+
+def test_nothing_hidden_is_rigid_body_dynamics(free) -> None:
+    arm = random_arm(3, seed=5, kinds=("revolute",))
+    q, v, a = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 20, 3))
+    found = np.array([free.torque(*state) for state in zip(q, v, a, strict=True)])
+    expected = arm.inverse_dynamics(q, v, a)
+    np.testing.assert_allclose(found, expected, atol=SAME * np.abs(expected).max())
+
+
+def test_every_effect_that_is_drawn_is_in_the_catalogue() -> None:
+    assert set(ALONE) <= set(CATALOGUE)
+    assert set(SIZES) == {*ALONE, *UNLISTED}
+
+
+BY_SENSOR = ("saturation", "torque_gain", "torque_offset", "encoder_offset", "time_delay")
+
+
+@pytest.mark.parametrize("effect", [e for e in SIZES if e not in BY_SENSOR])
+def test_what_is_hidden_changes_the_torque(effect, urdf, free, reference) -> None:
+    usual = free.usual(reference, SECONDS)
+    cause = drawn(effect, 1, usual, np.random.default_rng(2))
+    told = MujocoArm(urdf, [cause]).run(free, reference, SECONDS, 100.0)
+    plain = free_run(free, urdf, reference)
+    assert np.abs(told.tau - plain.tau).max() > SHOWN * usual.torque.max()
+
+
+def free_run(free: MujocoArm, urdf: str, reference):
+    return MujocoArm(urdf).run(free, reference, SECONDS, 100.0)
+
+
+def test_the_same_seed_gives_the_same_plant() -> None:
+    first, second = (plant(3, 11, SECONDS) for _ in range(2))
+    assert first.hidden == second.hidden
+    np.testing.assert_array_equal(first.recordings[0].tau, second.recordings[0].tau)
+
+
+def test_figures_count_claims_and_causes() -> None:
+    listed = {"listed": 1, "hidden": [{}], "found": 1, "claims": ["a at x", "b at y"], "wrong": ["b at y"]}
+    empty = {"listed": 0, "hidden": [], "found": 0, "claims": [], "wrong": []}
+    found = figures([c | {"processor_seconds": 1.0} for c in (listed, empty)])
+    assert (found["precision"], found["recall"], found["of_these_with_a_claim"]) == (0.5, 1.0, 0)
+    assert judge(found) == {"precision": False, "recall": True, "nothing_hidden": True}
+    assert json.dumps(found)
+    assert Hidden("payload", None).values == {}
