@@ -1,0 +1,112 @@
+"""Write every rule and every limit of a diagnosis from the code to docs/limits.md.
+
+python docs/make_limits.py [--check]
+
+What a limit does at half and at twice its value is taken from `validation/ablations/limits.json`, where that study has
+measured it: {"whole": FIGURES, "limits": {"tie_odds": {"half": FIGURES, "twice": FIGURES}, "lack_of_fit.much": ...}},
+FIGURES being numbers by name. Columns without a figure are left out.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any
+
+import griffe
+
+from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.diagnosis.rules.rule import RejectionRule
+from lagnet.diagnosis.settings import DecisionLimits
+from marked_regions import DOCS, ROOT, replaced, write_or_check
+
+COMMAND = "python docs/make_limits.py"
+MEASURED = ROOT / "validation" / "ablations" / "limits.json"
+CHANGES = {"half": "at half", "twice": "at twice"}
+FIGURES = {
+    "precision": "precision",
+    "recall": "recall",
+    "right_joint": "right joint",
+    "interval_coverage": "coverage of intervals",
+    "claims_on_plants_with_nothing_hidden": "names where nothing is hidden",
+    "unlisted_given_a_wrong_name": "unlisted physics named",
+}
+
+
+def measured() -> dict[str, Any]:
+    """Figures of the study; empty where there is none yet."""
+    return json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.exists() else {}
+
+
+def meanings(kind: type) -> dict[str, str]:
+    """What the Args of a class docstring say, by field."""
+    text = griffe.Docstring(inspect.getdoc(kind) or "", parser="google", parser_options={"warnings": False})
+    parts = [p.value for p in text.parsed if isinstance(p, griffe.DocstringSectionParameters)]
+    entries = [entry for part in parts for entry in part]
+    return {n.strip(): " ".join(e.description.split()) for e in entries for n in e.name.split(",")}
+
+
+def numbers(settings: Any) -> Iterator[tuple[str, float]]:
+    """Fields of a settings dataclass that are numbers, with their defaults."""
+    for field in fields(settings):
+        value = getattr(settings, field.name)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            yield field.name, value
+
+
+def table(settings: Any, prefix: str, study: Mapping[str, Any]) -> str:
+    """One row a limit.
+
+    Raises:
+        ValueError: a limit has no meaning in the docstring of its class.
+    """
+    said, limits = meanings(type(settings)), study.get("limits", {})
+    rows = list(numbers(settings))
+    changes = [c for c in CHANGES if any(limits.get(prefix + n, {}).get(c) for n, _ in rows)]
+    out = [["limit", "default", "meaning", *(CHANGES[c] for c in changes)], ["---"] * (3 + len(changes))]
+    for name, value in rows:
+        if not said.get(name):
+            raise ValueError(f"{type(settings).__name__}.{name} has no meaning: describe it under Args")
+        figures = [difference(study["whole"], limits.get(prefix + name, {}).get(c)) for c in changes]
+        out.append([f"`{name}`", f"{value:g}", said[name].replace("|", "\\|"), *figures])
+    return "\n".join(f"| {' | '.join(row)} |" for row in out)
+
+
+def difference(whole: Mapping[str, float], other: Mapping[str, float] | None) -> str:
+    """Figures that differ from those of the default."""
+    if other is None:
+        return "–"
+    shown = {n: (f"{whole[n]:.3g}", f"{other[n]:.3g}") for n in FIGURES if n in whole and n in other}
+    changed = [f"{FIGURES[n]} {before} → {after}" for n, (before, after) in shown.items() if before != after]
+    return ", ".join(changed) or "no change"
+
+
+def section(rule: RejectionRule, study: Mapping[str, Any]) -> str:
+    """What one rule says of itself."""
+    kind = type(rule)
+    path = inspect.getfile(kind).replace("\\", "/").partition("/src/")[2]
+    head = " ".join((inspect.getdoc(kind) or "").split("\n\n")[0].split())
+    source = f" Source: [{rule.source}](references.md#{rule.source})." if rule.source else ""
+    when = "on parameters refitted by the exact laws" if rule.after_refit else "on the linear fit of the search"
+    lines = [
+        f"### {rule.name}",
+        f"**{rule.statement[0].upper()}{rule.statement[1:]}.** {head}",
+        f"Asked {when}; in [`{rule.name}.py`](../src/{path}).{source}",
+    ]
+    return "\n\n".join([*lines, *([table(rule, f"{rule.name}.", study)] if any(numbers(rule)) else [])])
+
+
+def pages() -> dict[Any, str]:
+    """The page with its regions written anew."""
+    page, study = DOCS / "limits.md", measured()
+    text = page.read_text(encoding="utf-8")
+    text = replaced(text, "shared", table(DecisionLimits(), "", study), "docs/limits.md")
+    text = replaced(text, "rules", "\n\n".join(section(r, study) for r in RULES), "docs/limits.md")
+    return {page: text}
+
+
+if __name__ == "__main__":
+    sys.exit(write_or_check(pages(), COMMAND))
