@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from lagnet.models.black_box_lagrangian import BlackBoxSettings
 from lagnet.models.kinds import AugmentedSettings
+from lagnet.models.lagrangians.black_box_lagrangian import BlackBoxSettings
 from lagnet.recordings.recording import Recording
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.train import TrainResult, train

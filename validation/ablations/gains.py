@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from validation.ablations.rules import ablation_named
+from validation.ablations.table import NOTHING, WITHOUT_RULE, WITHOUT_STEP, ablation_named, names_of
 from validation.concealed.scoring import Score
 from validation.concealed.summary import FOUND, figures
 
@@ -75,6 +75,7 @@ class Row:
         """Plain values for the result file."""
         return {
             "instead": self.instead_of,
+            "kind": kind_of(self.name),
             "figures": self.figures,
             "bought": self.bought,
             "earns_its_place": self.earns,
@@ -87,6 +88,12 @@ class Row:
         """One line of a table."""
         shown = " ".join("     -" if (x := self.figures[k]) is None else f"{x:6.3f}" for k in (*SHARES, *COUNTS))
         return f"{self.name:74s} {shown}  better {self.plants_better}, worse {self.plants_worse} with it"
+
+
+def kind_of(name: str) -> str:
+    """What was taken out: nothing, a rule of the catalogue, a step that is none, or several."""
+    kinds = {"nothing": (NOTHING,), "rule": WITHOUT_RULE, "step": WITHOUT_STEP}
+    return next((kind for kind, own in kinds.items() if name in names_of(own)), "several")
 
 
 def rule_rows(told: Mapping[str, Sequence[Told]]) -> list[Row]:

@@ -1,4 +1,4 @@
-"""Takes rules out of the diagnosis from outside: neutral functions in the place of named ones, for a while."""
+"""Takes steps that are no rules out of the diagnosis: neutral functions in the place of named ones, for a while."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import reduce
 from importlib import import_module
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from typing import Any
 from unittest.mock import patch
 
@@ -19,7 +19,7 @@ Instead = Mapping[str, Callable[[Any], Any]]
 
 def import_all() -> None:
     """Every module of the diagnosis, so that no name is bound while another stands in its place."""
-    for module in iter_modules(lagnet.diagnosis.__path__, "lagnet.diagnosis."):
+    for module in walk_packages(lagnet.diagnosis.__path__, "lagnet.diagnosis."):
         import_module(module.name)
 
 

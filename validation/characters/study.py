@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.recordings.characters import TEST_LETTERS, Characters, load_characters
+from lagnet.recordings.datasets.characters import TEST_LETTERS, Characters, load_characters
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.train import train
 

@@ -15,9 +15,9 @@ import jax
 import numpy as np
 
 from lagnet.models.features import fit_features
+from lagnet.models.files.saving import load_model
 from lagnet.models.kinds import ModelSpec, draw, settings_class
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.saving import load_model
 from lagnet.models.scales import fit_scales
 from lagnet.plausibility.checks import CHECKS
 from lagnet.plausibility.checks.base_angle_independence import BaseAngleIndependence

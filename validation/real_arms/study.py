@@ -20,8 +20,8 @@ from validation.real_arms.metric import at_rest, low_passed, nmse, read_torques,
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import write_diagnosis
-from lagnet.models.loading import load_any
-from lagnet.recordings.load import load_recording
+from lagnet.models.files.loading import load_any
+from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.recording import Recording
 
 HERE = Path(__file__).resolve().parent

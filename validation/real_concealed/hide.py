@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
-from lagnet.models.corrected import CorrectedModel
+from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
 
 Case = tuple[Any, list[list[Recording]]]

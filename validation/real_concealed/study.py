@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
-from lagnet.models.corrected import CorrectedModel
-from lagnet.models.loading import load_any
-from lagnet.recordings.load import load_recording
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.files.loading import load_any
+from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.recording import Recording
 from validation.real_arms.arms import UR10E
 from validation.real_concealed.hide import Hiding, hidings

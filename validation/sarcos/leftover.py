@@ -13,8 +13,8 @@ from sklearn.ensemble import HistGradientBoostingRegressor
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
+from lagnet.recordings.datasets.sarcos import load_sarcos
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.sarcos import load_sarcos
 from validation.equal_budget import trained
 from validation.sarcos.study import DATA, PLAN, SECONDS, folds
 

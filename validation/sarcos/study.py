@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.recordings.datasets.sarcos import load_sarcos
 from lagnet.recordings.recording import Recording
-from lagnet.recordings.sarcos import load_sarcos
 from lagnet.training.settings import TrainingSettings
 from validation.equal_budget import trained
 

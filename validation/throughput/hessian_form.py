@@ -5,7 +5,7 @@ from __future__ import annotations
 import jax
 from jaxtyping import Array
 
-from lagnet.models.lagrangian import AbstractLagrangian, Vector
+from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Vector
 
 
 def hessian_inverse_dynamics(arm: AbstractLagrangian, q: Vector, v: Vector, a: Vector) -> Array:

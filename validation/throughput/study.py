@@ -16,11 +16,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from lagnet.models.delan import DelanSettings
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw
+from lagnet.models.lagrangians.delan import DelanSettings
+from lagnet.models.lagrangians.perceptron_delan import PerceptronDelanSettings
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.perceptron_delan import PerceptronDelanSettings
 from lagnet.models.scales import Scales
 from validation.throughput import in_training, one_core
 from validation.throughput.hessian_form import hessian_inverse_dynamics

@@ -14,8 +14,8 @@ import numpy as np
 
 import lagnet
 from lagnet.diagnosis.diagnose import diagnose
-from lagnet.diagnosis.from_simulated import learn_nominal
-from lagnet.models.loading import load_any
+from lagnet.diagnosis.nominal.from_recordings import learn_nominal
+from lagnet.models.files.loading import load_any
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.simulate import simulate
 
