@@ -8,16 +8,18 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test lint types imports wheel docs lock clean
+.PHONY: help demo test test-slow test-checked test-all lint types imports wheel docs site lock clean
 
 help:
 	@echo "make demo     hide an effect in a simulated arm, diagnose it, open the envelope"
-	@echo "make test     run the tests (PYTEST_ARGS='-k friction' for some of them)"
+	@echo "make test     run the tests that are quick (PYTEST_ARGS='-k friction' for some of them)"
+	@echo "make test-slow  run the slow ones; make test-all: both"
 	@echo "make lint     ruff: rules and format"
 	@echo "make types    pyright"
 	@echo "make imports  the order of the rooms"
 	@echo "make wheel    build dist/*.whl"
-	@echo "make docs     write again what is generated: catalogue, confusion matrix, figures from result files"
+	@echo "make docs     write again what is generated: catalogue, confusion matrix, limits, figures from result files"
+	@echo "make site     build the documentation site in ./site (open site/index.html; no server, no network)"
 	@echo "make lock     write requirements.lock from .venv"
 
 # requirements.lock pins what was tried together; the package itself is installed in place, for both targets alike.
@@ -33,8 +35,19 @@ demo: $(STAMP)
 	$(BIN)/lagnet demo --out lagnet-demo
 
 # One thread a worker: two workers share two cores, and linear algebra of this size gains nothing from more.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup
 test: $(STAMP)
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_ARGS)
+	$(PYTEST) -m "not slow" $(PYTEST_ARGS)
+
+test-slow: $(STAMP)
+	$(PYTEST) -m slow $(PYTEST_ARGS)
+
+# Shapes, types and ranks held at run time, in the rooms whose annotations say them.
+test-checked: $(STAMP)
+	LAGNET_RUNTIME_CHECKS=1 $(PYTEST) -m "not slow" tests/models $(PYTEST_ARGS)
+
+test-all: $(STAMP)
+	$(PYTEST) $(PYTEST_ARGS)
 
 lint: $(STAMP)
 	$(BIN)/ruff check src tests validation docs
@@ -52,11 +65,18 @@ wheel: $(STAMP)
 
 docs: $(STAMP)
 	$(BIN)/python docs/make_catalogue.py
+	$(BIN)/python docs/make_simulators.py
 	$(BIN)/python docs/make_confusion.py
+	$(BIN)/python docs/make_limits.py
 	$(BIN)/python docs/fill_figures.py
+
+# Strict: a link that leads nowhere or a reference to a name that does not exist fails the build.
+site: $(STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	@echo "site/index.html"
 
 lock: $(STAMP)
 	$(BIN)/python -m pip freeze --exclude-editable --exclude lagnet > requirements.lock
 
 clean:
-	rm -rf $(VENV) dist build .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) dist build site .pytest_cache .ruff_cache .import_linter_cache .hypothesis
