@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from lagnet.plausibility.subject import Subject
 Measure = Callable[[np.ndarray], np.ndarray]
 STEP = 1e-4  # of the half width of the box: small against its shape, large against rounding
 CORNERS = 32
+STEPS_A_ROUND = 2  # of the local search, at most
 REACHES = (0.2, 0.05)  # of the half width: how far the neighbours of each round lie
 NEIGHBOURS = 6
 
@@ -123,18 +125,21 @@ def starting_points(subject: Subject, dimension: int) -> np.ndarray:
 
 def _climb(seen: _Best, start: np.ndarray, iterations: int) -> None:
     size = max(abs(float(seen(start[None])[0])), 1e-300)
+    left = iter(range(STEPS_A_ROUND * iterations))
 
     def downhill(x: np.ndarray) -> tuple[float, np.ndarray]:
+        next(left)  # a line search among rounding errors would go on: its own limit is looked at between rounds only
         ahead, behind = np.minimum(x + STEP * np.eye(x.size), 1.0), np.maximum(x - STEP * np.eye(x.size), -1.0)
         values = -seen(np.concatenate([x[None], ahead, behind])) / size
         rise = values[1 : x.size + 1] - values[x.size + 1 :]
         return float(values[0]), rise / np.diagonal(ahead - behind)
 
-    minimize(
-        downhill,
-        start,
-        jac=True,
-        method="L-BFGS-B",
-        bounds=[(-1.0, 1.0)] * start.size,
-        options={"maxiter": iterations, "maxfun": 2 * iterations},
-    )
+    with suppress(StopIteration):
+        minimize(
+            downhill,
+            start,
+            jac=True,
+            method="L-BFGS-B",
+            bounds=[(-1.0, 1.0)] * start.size,
+            options={"maxiter": iterations},
+        )

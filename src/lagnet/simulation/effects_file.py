@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -64,6 +65,6 @@ def _one(table: dict, robot: Robot, where: str) -> InjectedEffect:
     for key, value in values.items():
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise EffectError(f"{key} is {value!r}, not a number", where=where)
-        if not abs(value) < FAR_TOO_LARGE:
+        if math.isfinite(value) and abs(value) >= FAR_TOO_LARGE:
             raise EffectError(f"{key} is {value:.3g}, which no arm has", where=where)
     return inject(robot, name, joint, {key: float(value) for key, value in values.items()}, where)

@@ -137,6 +137,25 @@ def test_a_stop_that_shows_in_motion_and_torque_is_no_outlier() -> None:
     assert not [f for f in findings if f.check == "outliers"]
 
 
+@pytest.mark.parametrize("start", range(898, 906))
+def test_the_edges_of_a_contact_are_no_outliers(start: int) -> None:
+    """Torque that rises within three samples, stays, and falls again, while the motion goes on as planned."""
+    whole = sound(2, noise=0.01)
+    edge = np.interp(np.arange(N), [start, start + 3, start + 400, start + 403], [0.0, 1.0, 1.0, 0.0])
+    pushed = replace(whole, tau=whole.tau + 6.0 * edge[:, None])
+    assert not [f for f in screen(pushed).findings if f.check == "outliers"]
+
+
+def test_a_brief_blow_on_the_torque_is_told_and_left_in() -> None:
+    """A gap's flank that hits: two samples a little off; the log of a bus that fails looks no different."""
+    whole = sound(4, noise=0.01)
+    hit = put(whole, "tau", slice(1771, 1773), 2, whole.tau[1771:1773, 2] - 12.0)
+    found = [f for f in screen(hit).findings if f.check == "outliers"]
+    assert [f.certainty for f in found] == ["likely"]
+    assert "left in" in found[0].mend
+    assert not found[0].rows.size
+
+
 @pytest.mark.shared_data
 def test_real_recordings_raise_no_false_alarm(shared_data) -> None:
     """Seen as pictures: the UR10e runs end in stops, the Panda's log repeats 5 % of its rows to the last digit."""

@@ -16,6 +16,7 @@ values = [14.87, 13.26, 11.13, 10.62, 11.03, 11.47]
 
 from __future__ import annotations
 
+import errno
 import math
 import tomllib
 from dataclasses import dataclass, field
@@ -144,6 +145,8 @@ def _parse(path: Path, where: str) -> dict[str, Any]:
     try:
         text = read_bounded(path, MAX_BYTES)
     except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise RecordingError(f"{error.strerror}, too long for a mapping", where=where) from None
         raise RecordingError(f"cannot be read ({error.strerror})", where=where) from None
     try:
         return tomllib.loads(text.decode("utf-8-sig"))

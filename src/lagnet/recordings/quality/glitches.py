@@ -1,7 +1,7 @@
 """Short runs of samples off the curve of their neighbours, which comes back behind them as if nothing had happened.
 
 A joint has inertia and a torque has neighbours: what leaves the curve for a few samples only is of the log. A step that
-stays, or a kink, is none: leaving samples out does not make the two sides meet.
+stays, or a kink, is none: leaving samples out does not make the two sides meet, or the samples lie between them.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ COMMON = 0.98
 MEETING = 0.2  # of the run's deviation that its neighbours may be off when the run is left out
 ORDINARY = 0.5  # of the limit that its neighbours may be off at most
 TOO_MANY = 0.05  # of the samples flagged: the signal is not smooth, and nothing can be told
+BETWEEN = 0.5  # of the run's deviation that it must leave the range of its neighbours by: the edge of a step stays in it
 EDGE = 4  # samples at the ends of a stretch that have too few neighbours
 
 
@@ -116,10 +117,15 @@ def _left_out(time: np.ndarray, x: np.ndarray, first: int, length: int, limit: f
     stop = first + length
     run, around = np.arange(first, stop), np.array([first - 2, first - 1, stop, stop + 1])
     size = float(np.max(np.abs(x[run] - cubic_weights(time, np.tile(around, (length, 1)), run) @ x[around])))
-    if size < limit:
+    if size < limit or _beyond(x[run], x[around]) < BETWEEN * size:
         return None
     before = off_neighbours(time, x, np.array([first - 1]), length)[0]
     behind = -off_neighbours(-time[::-1], x[::-1], np.array([len(x) - 1 - stop]), length)[0]
     outer = off_neighbours(time, x, np.array([first - 3, stop + 2]))[[0, 1]] if first >= 5 and stop + 5 < len(x) else ()
     off = max(abs(before), abs(behind), *(abs(o) for o in outer))
     return Glitch(first, stop, size) if off < min(MEETING * size, ORDINARY * limit) else None
+
+
+def _beyond(run: np.ndarray, around: np.ndarray) -> float:
+    """How far a run leaves the range of the samples around it."""
+    return float(max(run.max() - around.max(), around.min() - run.min(), 0.0))

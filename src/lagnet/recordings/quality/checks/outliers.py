@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from lagnet.recordings.quality.check import KINDS, QualityCheck, Subject
-from lagnet.recordings.quality.finding import CERTAIN, LIKELY, Finding
+from lagnet.recordings.quality.finding import CERTAIN, LIKELY, NO_ROWS, Finding
 from lagnet.recordings.quality.glitches import Glitch, glitches
 from lagnet.recordings.quality.runs import resolution
 
@@ -15,13 +15,15 @@ LEAST_OF_RANGE = {"q": 1e-4, "v": 0.02, "tau": 0.05}  # of a moving channel's ra
 OF_BEND = 3.0  # times the second difference that 99 % of samples stay under: a joint that starts at once is no outlier
 COMMON = 0.99
 QUANTA = 5.0  # steps of a coarse scale: what goes up and down by fewer is the scale's
-OUTRIGHT = 30.0  # times the least that is told: certain
+OUTRIGHT = 20.0  # times the least that is told: certain; of a torque that is its whole range
 AROUND = 4  # samples on both sides in which an event would show in other signals, too
 EVENT = 2.0  # times the bend that is usual: an impact or a stop, not a fault of the log
 TURNING = 0.1  # of a joint's usual step: it is about to turn
 OF_FRICTION = 0.4  # of the range of a torque, which dry friction may be
 IMPOSSIBLE = 1000.0  # [rad/s²] or [m/s²] that no arm reaches
 OVER_EFFORT = 2.0  # times the effort limit that no drive gives
+SET_ASIDE = "they were set aside; look for the cause in the log's bus or converter"
+LEFT = "they were left in, as an impact would look the same; look for the cause in the log's bus or converter"
 MOST = 0.1  # of the samples that may be set aside before the recording is refused
 
 
@@ -53,14 +55,16 @@ class Outliers(QualityCheck):
             return
         off = np.concatenate([rows[g.start : g.stop] for rows, g in found])
         rows, worst = max(found, key=lambda pair: pair[1].size)
+        certain = worst.size > OUTRIGHT * least(1)
+        aside = certain or kind != "tau"  # a gap's flanks and contacts hit the torque as briefly: they are physics
         yield self.found(
             subject,
             _words(subject, kind, joint, len(found), off.size, int(rows[worst.start]), worst.size),
-            "they were set aside; look for the cause in the log's bus or converter",
-            CERTAIN if worst.size > OUTRIGHT * least(1) else LIKELY,
+            SET_ASIDE if aside else LEFT,
+            CERTAIN if certain else LIKELY,
             channel=f"{kind}_{joint}",
             rows=np.sort(off),
-            set_aside=np.sort(off),
+            set_aside=np.sort(off) if aside else NO_ROWS,
             harmful=off.size > MOST * len(x),
         )
 
