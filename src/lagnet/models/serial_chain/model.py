@@ -194,7 +194,13 @@ def load_serial_chain(folder: str | Path, n_dof: int | None = None) -> SerialCha
 
 
 @partial(jax.jit, static_argnums=1)
-def _regressors(geometry: Geometry, revolute: tuple[bool, ...], q: Trajectory, v: Trajectory, a: Trajectory):
+def _regressors(
+    geometry: Geometry,
+    revolute: tuple[bool, ...],
+    q: Float[Array, "n dof"],
+    v: Float[Array, "n dof"],
+    a: Float[Array, "n dof"],
+):
     """Regressors of a batch; compiled once for arms of the same joints, whatever their shape and gravity."""
     return jax.vmap(lambda *s: moment_regressor(geometry, revolute, *s))(q, v, a)
 
