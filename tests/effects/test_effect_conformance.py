@@ -186,6 +186,22 @@ def test_bounds_agree_with_one_another(effect: Effect, ur5, sweep, shapes_of, se
 
 
 @every_effect
+def test_says_whether_it_follows_the_load_of_its_joint(effect: Effect, ur5, sweep, shapes_of) -> None:
+    """After the bodies: the load of other joints never matters, that of its own only where the effect says so."""
+    if effect.stage == "body":
+        return
+    rng, joint = np.random.default_rng(3), pick_joint(effect, ur5.n_dof, 2)
+    motion, shapes = shapes_of(effect, sweep(ur5, 3).motion, joint)
+    values = effect.values(coefficients_inside(effect, shapes[0], 0.3, rng), shapes[0])
+    other = np.arange(motion.n_dof) != joint
+    kick = rng.normal(0.0, motion.load.std(), motion.load.shape)
+    before = effect.torque(motion, joint, values)
+    np.testing.assert_array_equal(effect.torque(motion.with_load(motion.load + kick * other), joint, values), before)
+    moved = effect.torque(motion.with_load(motion.load + kick * ~other), joint, values)
+    assert effect.uses_load == bool(np.any(moved != before))
+
+
+@every_effect
 @given(seed=seeds)
 @few
 def test_an_effect_without_size_adds_nothing(effect: Effect, ur5, sweep, shapes_of, seed: int) -> None:

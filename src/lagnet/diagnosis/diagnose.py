@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.data_quality.inspect import screened_for
 from lagnet.diagnosis.holdout_torque import HoldoutTorque
@@ -70,6 +71,7 @@ class Diagnosis:
         return self.verdict.to_json()
 
 
+@threadpool_limits.wrap(limits=1)  # matrices are small: threads of the linear algebra would only wait for each other
 def diagnose(
     recordings: Sequence[Recording],
     robot: InverseDynamics | Any,

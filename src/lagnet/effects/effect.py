@@ -23,6 +23,7 @@ from lagnet.effects.motion import Motion
 
 Values = dict[str, float]
 Stage = Literal["body", "torque", "signal"]
+STAGES: tuple[Stage, ...] = ("body", "torque", "signal")
 """When an effect acts: on the bodies, whose torque is the load that transmissions feel; then at the joint; then on the
 recorded signal, which holds all that came before."""
 
@@ -63,6 +64,7 @@ class Effect(ABC):
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
     passing: ClassVar[bool] = False  # True: acts for a while only, and is looked for in what is left over
     uses_measured_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
+    uses_load: ClassVar[bool] = False  # True: after the body stage, its torque follows from the load of its joint
     plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it
     by_convention: ClassVar[Mapping[str, float]] = {}  # half-widths that a parameter's meaning leaves open, SI units
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
@@ -161,7 +163,9 @@ class LinearEffect(Effect):
         return {p.name: float(c) for p, c in zip(self.parameters, coefficients, strict=True)}
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
-        return self.regressor(motion, joint) @ np.array([values[p.name] for p in self.parameters])
+        columns = self.regressor(motion, joint)
+        weights = np.array([values[p.name] for p in self.parameters])
+        return (columns.reshape(-1, weights.size) @ weights).reshape(columns.shape[:-1])
 
 
 class StateEffect(Effect):

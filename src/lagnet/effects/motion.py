@@ -58,6 +58,18 @@ class Motion:
         """The same motion under another model torque."""
         return replace(self, load=load)
 
+    def link_regressor(self, joint: int) -> np.ndarray:
+        """Torque per unit of each inertial parameter of the body behind one joint, shape (n, dof, 10)."""
+        whole = getattr(self.model, "joint_torque_regressor", None)
+        if whole is None:
+            return self.remembered(f"link_{joint}", lambda: self.model.link_regressor(joint, self.q, self.v, self.a))
+
+        def links() -> list[np.ndarray]:  # one link costs as much as all
+            columns = whole(self.q, self.v, self.a)
+            return [np.ascontiguousarray(columns[..., 10 * k : 10 * k + 10]) for k in range(self.n_dof)]
+
+        return self.remembered("links", links)[joint]
+
     def remembered(self, key: str, make: Any) -> Any:
         """The value of `make()`, kept for the other effects that ask for the same key."""
         if key not in self.cache:

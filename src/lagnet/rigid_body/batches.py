@@ -14,11 +14,11 @@ TIP_WRENCH = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
 def inverse_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Recursive Newton–Euler, shape (n, dof)."""
-    data, rnea, out = model.createData(), pin.rnea, np.empty(q.shape)
-    for i in range(len(q)):
-        out[i] = rnea(model, data, q[i], v[i], a[i])
-    return out
+    """Recursive Newton–Euler, shape (n, dof); the loop over samples is Pinocchio's own, on one thread."""
+    if not len(q):
+        return np.empty(q.shape)
+    torque = pin.rneaInParallel(1, pin.ModelPool(model, 1), *(np.asfortranarray(x.T) for x in (q, v, a)))
+    return np.ascontiguousarray(torque.reshape(model.nv, len(q)).T)  # one joint or one sample comes back flat
 
 
 def gravity_torque(model: pin.Model, q: np.ndarray) -> np.ndarray:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.superposition import Superposition
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.diagnosis.regression.block_gram import BLOCK
 from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse_where_told, normal, power_of_all
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.motion import Motion
 from lagnet.models.corrected.model import NamedEffect, torque_with
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
@@ -64,31 +67,44 @@ class GaussNewton:
     sigma: np.ndarray
     slots: Slots
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "motions", tuple(p.motion(self.problem) for p in self.pieces))
+    @cached_property
+    def motions(self) -> tuple[Motion, ...]:
+        """The segments as the effects see them."""
+        return tuple(p.motion(self.problem) for p in self.pieces)
 
     def residuals(self, x: np.ndarray) -> list[np.ndarray]:
         """e = F(τ − τ_nominal − Σ τ_effect(x)) / σ of each segment, shape (len(keep), dof)."""
         effects = self.slots.named(x)
         out = []
-        for piece, motion in zip(self.pieces, self.motions, strict=True):  # pyright: ignore
+        for piece, motion in zip(self.pieces, self.motions, strict=True):
             rest = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
             out.append(rest * piece.counts / self.sigma)
         return out
 
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
-        base = self.residuals(x)
-        columns: list[list[np.ndarray]] = []
-        _, upper = self.slots.bounds()
-        for i in np.flatnonzero(free):
-            step = DIFFERENCE * max(abs(x[i]), 1e-2)
-            if x[i] + step > upper[i]:
-                step = -step
-            moved = x.copy()
-            moved[i] += step
-            columns.append([(m - b) / step for m, b in zip(self.residuals(moved), base, strict=True)])
-        return [np.stack([c[n] for c in columns], axis=2) for n in range(len(base))]
+        effects = self.slots.named(x)
+        sums = [Superposition(motion, effects) for motion in self.motions]
+        tables = [np.zeros((p.keep.size, self.problem.n_dof, int(free.sum()))) for p in self.pieces]
+        for column, i in enumerate(np.flatnonzero(free)):
+            n, other, step = self._stepped(x, int(i))
+            for piece, total, table in zip(self.pieces, sums, tables, strict=True):
+                change = total.change(n, other)
+                if change:
+                    joints = list(change)
+                    moved = self.problem.reduce(piece, np.column_stack(list(change.values())))
+                    table[:, joints, column] = -moved * piece.counts[:, joints] / self.sigma[joints] / step
+        return tables
+
+    def _stepped(self, x: np.ndarray, i: int) -> tuple[int, NamedEffect, float]:
+        """The effect of a coordinate, that effect a step further, and the step."""
+        step = DIFFERENCE * max(abs(x[i]), 1e-2)
+        if x[i] + step > self.slots.bounds()[1][i]:
+            step = -step
+        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
+        moved = x[self.slots.of(n)].copy()
+        moved[i - self.slots.starts[n]] += step
+        return n, self.slots.effects[n].at_coordinates(moved), step
 
     def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
         """Bounded Gauss–Newton with step halving; parameters that are not free stay."""

@@ -44,7 +44,7 @@ def compare_with_rivals(equations: NormalEquations, found: Selection) -> tuple[C
 
 
 def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comparison:
-    here, error = view.score(own), view.loss(own)[0]
+    here, error = view.score(own), view.error(own)
     odds: dict[str, float] = {}
     tied: set[str] = set()
     for names, other in replacements(view, own, index):
@@ -52,7 +52,7 @@ def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comp
         if not np.isfinite(score):
             continue
         gap = float((here - score) / np.log(10.0))
-        same = view.loss(other)[0] - error < max(view.limits.same_error * error, view.least_gain)
+        same = view.error(other) - error < max(view.limits.same_error * error, view.least_gain)
         for name in names:
             if gap < odds.get(name, np.inf):
                 odds[name] = gap

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.regression.normal_equations import ridge_solve
 from lagnet.diagnosis.settings import DecisionLimits
 
+T = TypeVar("T")
 RIDGE = 1e-7  # of a column's own power: settles directions that the data leave open at zero
 MEMORY = (1.0, 60.0)  # least and most samples that one piece of independent evidence may take
 
@@ -35,6 +37,13 @@ class NormalEquations:
     folds: tuple[np.ndarray, ...]
     samples: np.ndarray
     limits: DecisionLimits = field(default_factory=DecisionLimits)
+    _known: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
+
+    def remembered(self, key: Hashable, make: Callable[[], T]) -> T:
+        """What `make` gives, made once."""
+        if key not in self._known:
+            self._known[key] = make()
+        return self._known[key]
 
     def columns(self, joint: int, selection: Iterable[int]) -> np.ndarray:
         """Column numbers of the selected hypotheses that act on a joint."""

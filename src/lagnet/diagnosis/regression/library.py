@@ -89,6 +89,25 @@ class Library:
             at += self.widths[i]
         return found
 
+    @cached_property
+    def freedom(self) -> tuple[tuple[int, int], ...]:
+        """Numbers of coefficients and of shape parameters of each hypothesis."""
+        return tuple((w, len(h.shape)) for w, h in zip(self.widths, self.hypotheses, strict=True))
+
+    def bounds_at(self, joint: int) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest coefficients of a joint's columns, each of shape (width,)."""
+        return self._bounds[joint]
+
+    @cached_property
+    def _bounds(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+        out = []
+        for joint in range(self.n_dof):
+            own = (self.hypotheses[i] for i in self.slots[joint])
+            pairs = [h.law.bounds(dict(h.shape)) for h in own]
+            lower, upper = zip(*pairs, strict=True) if pairs else ((np.zeros(0),), (np.zeros(0),))
+            out.append((np.concatenate(lower), np.concatenate(upper)))
+        return tuple(out)
+
     def width(self, joint: int) -> int:
         """Number of columns of a joint, the residual not counted."""
         return sum(self.widths[i] for i in (*self.local[joint], *self.reaching))

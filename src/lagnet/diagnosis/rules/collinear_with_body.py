@@ -81,5 +81,5 @@ class CollinearWithBody(RejectionRule):
 
 def _share(view: JointView, own: Sequence[int], index: int) -> float:
     """(E without the effect − E) / Σ r²: share of the joint's mismatch that one of its effects explains."""
-    gain = view.loss([k for k in own if k != index])[0] - view.loss(own)[0]
+    gain = view.error([k for k in own if k != index]) - view.error(own)
     return gain / max(float(view.equations.total[view.joint][-1, -1]), 1e-300)

@@ -175,9 +175,7 @@ def _score(
     floor = np.maximum.reduce([fit.sse, 1e-3 * scales.noise_power, 1e-12 * scales.torque_power])
     evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * np.log(np.maximum(floor, 1e-300)))
     chosen = (*arm_wide, *(i for own in local for i in own))
-    return float(
-        evidence - sum(equations.limits.penalty(library.widths[i], len(library.hypotheses[i].shape)) for i in chosen)
-    )
+    return float(evidence - sum(equations.limits.penalty(*library.freedom[i]) for i in chosen))
 
 
 def refit_selection(equations: NormalEquations, found: Selection) -> Selection:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.regression.cross_validation import NormalEquations, joint_loss, statistical_inefficiency, take_off
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, statistical_inefficiency
+from lagnet.diagnosis.regression.joint_system import JointSystem, joint_system
 from lagnet.diagnosis.settings import DecisionLimits
 
 ROUNDS = 40
@@ -18,9 +19,9 @@ class JointView:
     """Normal equations of one joint after the contributions of arm-wide hypotheses are subtracted.
 
     Args:
-        bench: the workbench.
+        equations: of the whole arm.
         joint: index.
-        total, folds: normal equations with the residual last.
+        system: its normal equations with the residual last, and what was judged on them already.
         inefficiency: samples that make one independent piece of evidence.
         noise_power: squared error that noise alone would leave.
         torque_power: squared torque of the joint, summed over samples.
@@ -28,65 +29,44 @@ class JointView:
 
     equations: NormalEquations
     joint: int
-    total: np.ndarray
-    folds: np.ndarray
+    system: JointSystem
     inefficiency: float
     noise_power: float
     torque_power: float
-    known: dict[tuple[int, ...], float] = field(default_factory=dict)
 
     @property
     def limits(self) -> DecisionLimits:
         """Where the diagnosis decides."""
         return self.equations.limits
 
-    def loss(self, selection: Sequence[int]) -> tuple[float, np.ndarray]:
-        """E(S) on blocks left out of the fit [N² m²], and θ of all blocks."""
-        return joint_loss(self.total, self.folds, self.equations.columns(self.joint, selection))
+    def error(self, selection: Sequence[int]) -> float:
+        """E(S) on blocks left out of the fit [N² m²]."""
+        return self.system.judged(selection).error
+
+    def coefficients(self, selection: Sequence[int]) -> np.ndarray:
+        """θ of all blocks, in the order of the selection's columns."""
+        return self.system.solved(selection)[1]
 
     def score(self, selection: Sequence[int]) -> float:
         """log P(S) [nats]; −∞ where a coefficient breaks its physical bounds."""
-        key = tuple(sorted(selection))
-        if key not in self.known:
-            self.known[key] = self._score(key)
-        return self.known[key]
-
-    def _score(self, selection: Sequence[int]) -> float:
-        error, theta = self.loss(selection)
-        if not self.feasible(selection, theta):
+        judged = self.system.judged(selection)
+        if not judged.feasible:
             return -np.inf
-        floor = max(error, 1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
+        floor = max(judged.error, 1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
         evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
-        return evidence - sum(self.limits.penalty(self.equations.library.widths[i], self._shaped(i)) for i in selection)
-
-    def feasible(self, selection: Sequence[int], theta: np.ndarray) -> bool:
-        """Whether all coefficients lie inside their bounds."""
-        at = 0
-        for i in selection:
-            width = self.equations.library.widths[i]
-            h = self.equations.library.hypotheses[i]
-            lower, upper = h.law.bounds(dict(h.shape))
-            part = theta[at : at + width]
-            if np.any(part < lower) or np.any(part > upper):
-                return False
-            at += width
-        return True
+        return evidence - sum(self.limits.penalty(*self.equations.library.freedom[i]) for i in selection)
 
     def matters(self, selection: Sequence[int], index: int) -> bool:
         """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
-        without, _ = self.loss([i for i in selection if i != index])
-        with_it, _ = self.loss(selection)
-        gain = without - with_it
+        without = self.error([i for i in selection if i != index])
+        gain = without - self.error(selection)
         least_torque = self.limits.least_torque**2 * self.torque_power
         return gain > max(self.limits.least_share * without, least_torque, self.least_gain)
 
     @property
     def least_gain(self) -> float:
         """r E_nominal: squared error that an effect must explain to be tested beside larger ones [N² m²]."""
-        return self.limits.least_of_residual * float(self.total[-1, -1])
-
-    def _shaped(self, index: int) -> int:
-        return len(self.equations.library.hypotheses[index].shape)
+        return self.limits.least_of_residual * self.system.power
 
 
 def view_joint(
@@ -98,11 +78,8 @@ def view_joint(
     torque_power: float,
 ) -> JointView:
     """Normal equations of a joint after the known contributions of arm-wide hypotheses are subtracted."""
-    total, folds = equations.total[joint], equations.folds[joint]
-    for index, theta in taken.items():
-        columns = equations.columns(joint, [index])
-        total, folds = take_off(total, columns, theta), take_off(folds, columns, theta)
-    return JointView(equations, joint, total, folds, memory, noise_power, torque_power)
+    system = joint_system(equations, joint, taken)
+    return JointView(equations, joint, system, memory, noise_power, torque_power)
 
 
 def search_joint(view: JointView, warm: tuple[int, ...] = ()) -> tuple[int, ...]:
@@ -117,7 +94,8 @@ def rich_start(view: JointView) -> tuple[int, ...]:
     library = view.equations.library
     selection: tuple[int, ...] = ()
     plain = [i for i in library.local[view.joint] if not library.hypotheses[i].shape]
-    order = sorted(plain, key=lambda i: view.loss([i])[0])
+    view.system.judge_additions((), plain)
+    order = sorted(plain, key=lambda i: view.error([i]))
     for i in order:
         if compatible(view, selection, i) and np.isfinite(view.score((*selection, i))):
             selection = (*selection, i)
@@ -156,8 +134,8 @@ def simplify(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
 
 def gains_over(view: JointView, selection: Sequence[int], index: int, other: Sequence[int]) -> bool:
     """E(special case) − E(law) ≥ max(s E, c · explained): whether a law gains enough over its special case."""
-    before, after = view.loss(selection)[0], view.loss(other)[0]
-    explained = view.loss([k for k in selection if k != index])[0] - before
+    before, after = view.error(selection), view.error(other)
+    explained = view.error([k for k in selection if k != index]) - before
     limits = view.limits
     return after - before >= max(limits.least_share * after, limits.least_over_special_case * explained)
 
@@ -179,7 +157,7 @@ def drop_immaterial(view: JointView, selection: tuple[int, ...]) -> tuple[int, .
         idle = [i for i in selection if not view.matters(selection, i)]
         if not idle:
             return selection
-        losses = {i: view.loss([k for k in selection if k != i])[0] for i in idle}
+        losses = {i: view.error([k for k in selection if k != i]) for i in idle}
         worst = min(losses, key=lambda i: losses[i])
         selection = tuple(i for i in selection if i != worst)
 
@@ -198,7 +176,9 @@ def exchanges(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ..
 
 def _with_one_more(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]) -> list[tuple[int, ...]]:
     local = view.equations.library.local[view.joint]
-    return [(*base, i) for i in local if i not in tried and compatible(view, base, i)]
+    added = [i for i in local if i not in tried and compatible(view, base, i)]
+    view.system.judge_additions(base, added)
+    return [(*base, i) for i in added]
 
 
 def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
@@ -217,5 +197,4 @@ def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
 def joint_inefficiency(view: JointView, selection: Sequence[int]) -> float:
     """g, statistical inefficiency of a selection's residual [samples]."""
     columns = view.equations.columns(view.joint, selection)
-    _, theta = view.loss(selection)
-    return statistical_inefficiency(view.equations, view.joint, columns, theta)
+    return statistical_inefficiency(view.equations, view.joint, columns, view.coefficients(selection))

@@ -41,9 +41,7 @@ class LinkInertia(LinearEffect):
     source = "gautier1990"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:
-        return motion.remembered(
-            f"link_{joint}", lambda: motion.model.link_regressor(joint, motion.q, motion.v, motion.a)
-        )
+        return motion.link_regressor(joint)
 
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         return bool(np.all(np.isfinite(coefficients)))

@@ -38,10 +38,7 @@ class Payload(Effect):
     source = "atkeson1986"
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
-        last = motion.n_dof - 1
-        return motion.remembered(
-            f"link_{last}", lambda: motion.model.link_regressor(last, motion.q, motion.v, motion.a)
-        )
+        return motion.link_regressor(motion.n_dof - 1)
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.array([0.0, *np.full(9, -np.inf)]), np.full(10, np.inf)

@@ -26,6 +26,7 @@ class Saturation(Effect):
     shown_by = "motions that ask for high torque"
     confused_with = ("torque_gain",)
     absent = ()
+    uses_load = True
     source = "swevers2007"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:

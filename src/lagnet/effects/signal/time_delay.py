@@ -27,6 +27,7 @@ class TimeDelay(Effect):
     shown_by = "fast motion with quick changes of torque"
     confused_with = ("viscous_friction", "joint_elasticity", "backlash")
     is_delay = True
+    uses_load = True
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:

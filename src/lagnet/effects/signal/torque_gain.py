@@ -23,6 +23,7 @@ class TorqueGain(Effect):
     shown_by = "several levels of torque"
     confused_with = ("payload", "saturation", "rotor_inertia")
     absent = (("g", 1.0),)
+    uses_load = True
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:

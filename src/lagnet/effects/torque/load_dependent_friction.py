@@ -22,6 +22,7 @@ class LoadDependentFriction(LinearEffect):
     confused_with = ("coulomb_friction",)
     is_friction = True
     is_dry_friction = True
+    uses_load = True
     source = "bittencourt2012"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:

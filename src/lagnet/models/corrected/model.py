@@ -10,7 +10,7 @@ from typing import Any, final
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.effects.effect import Stage
+from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError, ModelError
 from lagnet.models.corrected.identified import IdentifiedLayer
@@ -19,7 +19,6 @@ from lagnet.models.corrected.tilted_bodies import tilted_weight
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, JointVector, MassMatrix, Samples, Trajectory
 
-STAGES = ("body", "torque", "signal")
 OF_BODIES = {
     "gravity",
     "gravity_regressor",

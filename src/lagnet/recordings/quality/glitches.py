@@ -21,7 +21,7 @@ COMMON = 0.98
 MEETING = 0.2  # of the run's deviation that its neighbours may be off when the run is left out
 ORDINARY = 0.5  # of the limit that its neighbours may be off at most
 TOO_MANY = 0.05  # of the samples flagged: the signal is not smooth, and nothing can be told
-BETWEEN = 0.5  # of the run's deviation that it must leave the range of its neighbours by: the edge of a step stays in it
+BETWEEN = 0.5  # of the run's deviation that it must leave its neighbours' range by: the edge of a step stays in it
 EDGE = 4  # samples at the ends of a stretch that have too few neighbours
 
 

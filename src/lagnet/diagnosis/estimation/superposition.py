@@ -1,0 +1,94 @@
+"""τ_nominal + Σ_k τ_k along one motion, and what changes of it when one effect changes: the others are computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.effect import STAGES, Stage
+from lagnet.effects.motion import Motion
+from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.tilted_bodies import tilted_weight
+
+Change = dict[int, np.ndarray]
+"""Torque by joint, each of shape (n,) [N m]; joints that are not in it have none."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """One effect: the load that it sees, shape (n, dof), and the torque that it adds [N m]."""
+
+    seen: np.ndarray
+    added: Change
+
+
+class Superposition:
+    """Effects along one motion, each under the load that `torque_with` gives it."""
+
+    def __init__(self, motion: Motion, effects: Sequence[NamedEffect]):
+        """Computes all effects.
+
+        Args:
+            motion: n samples.
+            effects: in the order in which signals act.
+        """
+        self._motion, self._effects = motion, tuple(effects)
+        self._parts: dict[int, _Part] = {}
+        load = motion.load
+        for stage in STAGES:
+            before = load
+            for n in self._of(stage):
+                seen = load if stage == "signal" else before
+                added = _by_joint(self._effects[n].added(motion.with_load(seen)))
+                self._parts[n] = _Part(seen, added)
+                load = _plus(load, added)
+            if stage == "body":
+                self._tilted = tilted_weight(motion, self._effects)
+                load = load + self._tilted
+        self.total = load
+
+    def change(self, n: int, other: NamedEffect) -> Change:
+        """By how much the torque changes if effect n becomes another of the same law and joint."""
+        stage = effect_named(other.effect).stage
+        change = _minus(_by_joint(other.added(self._motion.with_load(self._parts[n].seen))), self._parts[n].added)
+        if stage == "body":
+            effects = (*self._effects[:n], other, *self._effects[n + 1 :])
+            tilted = tilted_weight(self._motion, effects) - self._tilted
+            change = _minus(change, {} if np.ndim(tilted) == 0 else _by_joint(-np.asarray(tilted)))
+            for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the bodies alone
+                change = _minus(change, {j: -x for j, x in after.items()})
+        for m in self._of("signal"):
+            if stage != "signal" or m > n:
+                change = _minus(change, {j: -x for j, x in self._answer(m, change).items()})
+        return change
+
+    def _of(self, stage: Stage) -> list[int]:
+        return [n for n, e in enumerate(self._effects) if effect_named(e.effect).stage == stage]
+
+    def _answer(self, m: int, change: Change) -> Change:
+        """By how much an effect changes if the load that it sees does."""
+        effect, part = self._effects[m], self._parts[m]
+        if not effect_named(effect.effect).uses_load or effect.joint not in change:
+            return {}
+        return _minus(_by_joint(effect.added(self._motion.with_load(_plus(part.seen, change)))), part.added)
+
+
+def _by_joint(torque: np.ndarray) -> Change:
+    return {int(j): torque[:, j] for j in np.flatnonzero(torque.any(axis=0))}
+
+
+def _plus(load: np.ndarray, change: Change) -> np.ndarray:
+    out = load.copy()
+    for joint, torque in change.items():
+        out[:, joint] += torque
+    return out
+
+
+def _minus(one: Change, other: Change) -> Change:
+    out = dict(one)
+    for joint, torque in other.items():
+        out[joint] = out[joint] - torque if joint in out else -torque
+    return out

@@ -1,0 +1,58 @@
+"""What changes of a sum of effects when one changes, against the sum computed anew."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.estimation.superposition import Superposition
+from lagnet.effects.catalogue import CATALOGUE
+from lagnet.effects.motion import Motion
+from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.rigid_body.robot import load_description
+
+ROUNDING = 1e-10  # relative, of differences of sums
+
+EFFECTS = (
+    NamedEffect("payload", None, {"m": 1.2, "cx": 0.01, "cy": 0.02, "cz": 0.1, "Ixx": 0.01, "Ixy": 0.0, "Iyy": 0.01, "Ixz": 0.0, "Iyz": 0.0, "Izz": 0.01}),
+    NamedEffect("gravity_tilt", None, {"theta_1": 0.03, "theta_2": -0.02}),
+    NamedEffect("rotor_inertia", 1, {"Ia": 0.3}),
+    NamedEffect("viscous_friction", 0, {"Fv": 2.0}),
+    NamedEffect("load_dependent_friction", 1, {"mu": 0.05}),
+    NamedEffect("load_dependent_friction", 2, {"mu": 0.02}),
+    NamedEffect("torque_gain", 1, {"K": 0.95}),
+    NamedEffect("time_delay", 1, {"T": 0.004}),
+    NamedEffect("torque_offset", 2, {"tau0": 0.3}),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def motion() -> Motion:
+    """Sines of all joints of a UR-5."""
+    arm, time = load_description("ur5"), np.arange(400) / 200.0
+    angle = time[:, None] * np.array([2.1, 3.0, 1.7, 4.2, 2.6, 3.3]) + np.arange(6.0)
+    rate = np.array([2.1, 3.0, 1.7, 4.2, 2.6, 3.3])
+    q, v, a = 0.8 * np.sin(angle), 0.8 * rate * np.cos(angle), -0.8 * rate**2 * np.sin(angle)
+    return Motion(time, q, v, a, arm.inverse_dynamics(q, v, a), np.full(6, 0.01), arm)
+
+
+def given(effect: NamedEffect) -> NamedEffect:
+    """With the names of parameters that the catalogue has, in its order."""
+    names = [p.name for p in CATALOGUE[effect.effect].parameters]
+    return NamedEffect(effect.effect, effect.joint, dict(zip(names, effect.values.values(), strict=True)))
+
+
+@pytest.mark.parametrize("n", range(len(EFFECTS)))
+def test_a_change_is_the_difference_of_two_sums(n: int, motion: Motion) -> None:
+    effects = [given(e) for e in EFFECTS]
+    x = effects[n].coordinates()
+    other = effects[n].at_coordinates(1.01 * x)
+    sums = Superposition(motion, effects)
+    np.testing.assert_allclose(sums.total, torque_with(motion, effects), rtol=1e-12, atol=1e-12)
+    anew = torque_with(motion, [*effects[:n], other, *effects[n + 1 :]]) - torque_with(motion, effects)
+    change = sums.change(n, other)
+    told = np.zeros_like(anew)
+    for joint, torque in change.items():
+        told[:, joint] = torque
+    assert np.abs(anew).max() > 0
+    np.testing.assert_allclose(told, anew, rtol=0, atol=ROUNDING * np.abs(motion.load).max())
