@@ -14,7 +14,7 @@ from lagnet.rigid_body.robot import load_description
 ROUNDING = 1e-10  # relative, of differences of sums
 
 EFFECTS = (
-    NamedEffect("payload", None, {"m": 1.2, "cx": 0.01, "cy": 0.02, "cz": 0.1, "Ixx": 0.01, "Ixy": 0.0, "Iyy": 0.01, "Ixz": 0.0, "Iyz": 0.0, "Izz": 0.01}),
+    NamedEffect("payload", None, dict(enumerate((1.2, 0.01, 0.02, 0.1, 0.01, 0, 0.01, 0, 0, 0.01)))),
     NamedEffect("gravity_tilt", None, {"theta_1": 0.03, "theta_2": -0.02}),
     NamedEffect("rotor_inertia", 1, {"Ia": 0.3}),
     NamedEffect("viscous_friction", 0, {"Fv": 2.0}),

@@ -1,4 +1,4 @@
-"""τ_nominal + Σ_k τ_k along one motion, and what changes of it when one effect changes: the others are computed once."""
+"""τ_nominal + Σ_k τ_k along one motion, and what changes of it when one effect changes; the others stay computed."""
 
 from __future__ import annotations
 

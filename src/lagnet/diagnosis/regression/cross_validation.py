@@ -45,6 +45,11 @@ class NormalEquations:
             self._known[key] = make()
         return self._known[key]
 
+    def is_felt(self, joint: int, index: int) -> bool:
+        """Whether a hypothesis has any torque at a joint: a link loads no joint behind it."""
+        columns = self.columns(joint, [index])
+        return bool(np.any(self.total[joint][columns, columns] > 0))
+
     def columns(self, joint: int, selection: Iterable[int]) -> np.ndarray:
         """Column numbers of the selected hypotheses that act on a joint."""
         slots = self.library.slots[joint]

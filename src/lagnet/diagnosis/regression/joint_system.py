@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -31,6 +31,7 @@ class JointSystem:
         total: shape (K + 1, K + 1), sum of all blocks.
         folds: shape (n_folds, K + 1, K + 1).
         known: what was judged, by selections in increasing order.
+        found: selections that a search found, by where it began.
     """
 
     library: Library
@@ -38,6 +39,7 @@ class JointSystem:
     total: np.ndarray
     folds: np.ndarray
     known: dict[tuple[int, ...], Judged] = field(default_factory=dict)
+    found: dict[Hashable, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def power(self) -> float:
@@ -96,12 +98,13 @@ def joint_system(equations: NormalEquations, joint: int, taken: dict[int, np.nda
         joint: index.
         taken: coefficients of arm-wide hypotheses.
     """
-    if not taken:
+    felt = {i: theta for i, theta in taken.items() if equations.is_felt(joint, i)}
+    if not felt:
         return equations.remembered(
             joint, lambda: JointSystem(equations.library, joint, equations.total[joint], equations.folds[joint])
         )
     total, folds = equations.total[joint], equations.folds[joint]
-    for index, theta in taken.items():
+    for index, theta in felt.items():
         columns = equations.columns(joint, [index])
         total, folds = take_off(total, columns, theta), take_off(folds, columns, theta)
     return JointSystem(equations.library, joint, total, folds)

@@ -94,6 +94,18 @@ class Library:
         """Numbers of coefficients and of shape parameters of each hypothesis."""
         return tuple((w, len(h.shape)) for w, h in zip(self.widths, self.hypotheses, strict=True))
 
+    def incompatible_at(self, joint: int) -> set[tuple[int, int]]:
+        """Pairs of a joint's hypotheses that may not stand together: the same law twice, or beside its special case."""
+        return self._incompatible[joint]
+
+    @cached_property
+    def _incompatible(self) -> tuple[set[tuple[int, int]], ...]:
+        laws = {h.effect: {h.effect, *h.law.contains} for h in self.hypotheses}
+        return tuple(
+            {(i, k) for i in own for k in own if laws[self.hypotheses[i].effect] & laws[self.hypotheses[k].effect]}
+            for own in self.local
+        )
+
     def bounds_at(self, joint: int) -> tuple[np.ndarray, np.ndarray]:
         """Least and largest coefficients of a joint's columns, each of shape (width,)."""
         return self._bounds[joint]

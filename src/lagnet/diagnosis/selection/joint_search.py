@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,6 +56,13 @@ class JointView:
         evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
         return evidence - sum(self.limits.penalty(*self.equations.library.freedom[i]) for i in selection)
 
+    def remembered(self, what: Hashable, make: Callable[[], tuple[int, ...]]) -> tuple[int, ...]:
+        """A selection that `make` finds on this system under these scales, found once."""
+        key = (what, self.inefficiency, self.noise_power, self.torque_power)
+        if key not in self.system.found:
+            self.system.found[key] = make()
+        return self.system.found[key]
+
     def matters(self, selection: Sequence[int], index: int) -> bool:
         """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
         without = self.error([i for i in selection if i != index])
@@ -85,12 +92,16 @@ def view_joint(
 def search_joint(view: JointView, warm: tuple[int, ...] = ()) -> tuple[int, ...]:
     """The best selection found from an empty start, a rich one and a given one."""
     starts = {(), rich_start(view), warm}
-    found = [improve(view, s) for s in sorted(starts)]
+    found = [view.remembered(("improved", s), lambda s=s: improve(view, s)) for s in sorted(starts)]
     return max(found, key=lambda s: view.score(s))
 
 
 def rich_start(view: JointView) -> tuple[int, ...]:
     """A start with every plain hypothesis that is feasible beside the others; superfluous ones are then dropped."""
+    return view.remembered("rich", lambda: _rich_start(view))
+
+
+def _rich_start(view: JointView) -> tuple[int, ...]:
     library = view.equations.library
     selection: tuple[int, ...] = ()
     plain = [i for i in library.local[view.joint] if not library.hypotheses[i].shape]
@@ -183,15 +194,8 @@ def _with_one_more(view: JointView, base: tuple[int, ...], tried: tuple[int, ...
 
 def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
     """Whether a hypothesis may stand beside the others: not twice the same, nor a law beside its special case."""
-    library = view.equations.library
-    new = library.hypotheses[index]
-    for i in selection:
-        old = library.hypotheses[i]
-        if old.place == new.place or old.effect in new.law.contains or new.effect in old.law.contains:
-            return False
-        if set(old.law.contains) & set(new.law.contains):
-            return False
-    return True
+    barred = view.equations.library.incompatible_at(view.joint)
+    return not any((i, index) in barred for i in selection)
 
 
 def joint_inefficiency(view: JointView, selection: Sequence[int]) -> float:
