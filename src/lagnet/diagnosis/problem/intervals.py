@@ -58,4 +58,4 @@ def _without(piece: Segment, events: Sequence[EventInterval], slack: float) -> S
     for s in events:
         if s.recording == piece.recording:
             out = out & ~((time >= s.start - slack) & (time <= s.end + slack))[:, None]
-    return piece if out is piece.counts else replace(piece, counts=out)
+    return piece if out is piece.counts else piece.with_counts(out)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -32,6 +32,7 @@ class Segment:
         keep: rows that count after low-pass and decimation, edges left out.
         counts: shape (len(keep), dof), False where the joint rests and dry friction may take any value.
         origin: index of the fitted recording that it is a part of; None for another recording.
+        columns: low-passed columns of hypotheses that were asked for already, by what they follow from.
     """
 
     time: np.ndarray
@@ -44,6 +45,13 @@ class Segment:
     keep: np.ndarray
     counts: np.ndarray
     origin: int | None = None
+    columns: dict[Hashable, np.ndarray] = field(default_factory=dict, init=False, repr=False)
+
+    def with_counts(self, counts: np.ndarray) -> Segment:
+        """The same piece with other samples that count, shape (len(keep), dof)."""
+        out = replace(self, counts=counts)
+        out.columns.update(self.columns)
+        return out
 
     def motion(self, problem: Problem) -> Motion:
         """The piece as the effects see it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +15,8 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.model import NamedEffect, load_before
 from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, weight_in_each
+
+MOST_KEPT = 400e6  # bytes of columns that are kept for the next search
 
 
 @dataclass(frozen=True)
@@ -126,13 +128,50 @@ class Library:
 
     def tables(self, problem: Problem, piece: Segment) -> Iterator[np.ndarray]:
         """[F X, r] of each joint on one segment, shape (len(keep), width + 1)."""
-        motion = piece.motion(problem)
         residual = problem.residual(piece)
-        arm_wide = [problem.reduce(piece, self._columns(i, motion, problem.known)) for i in self.reaching]
+        columns = self._reduced(problem, piece)
         for joint in range(self.n_dof):
-            own = [self._columns(i, motion, problem.known) for i in self.local[joint]]
-            near = problem.reduce(piece, np.column_stack(own)) if own else np.zeros((piece.keep.size, 0))
-            yield np.column_stack([near, *(f[:, joint] for f in arm_wide), residual[:, joint]])
+            near = [columns[i] for i in self.local[joint]]
+            far = [columns[i][:, joint] for i in self.reaching]
+            yield np.column_stack([*near, *far, residual[:, joint]])
+
+    def _reduced(self, problem: Problem, piece: Segment) -> dict[int, np.ndarray]:
+        """F X_k of each hypothesis, shape (len(keep), k) or (len(keep), dof, k); the piece keeps them if they fit."""
+        keys = [self._follows_from(problem, i) for i in range(len(self.hypotheses))]
+        out = {i: piece.columns[key] for i, key in enumerate(keys) if key in piece.columns}
+        motion = piece.motion(problem)
+        for group in (*self.local, *((i,) for i in self.reaching)):  # filtered together, and not all in memory at once
+            fresh = [i for i in group if i not in out]
+            if fresh:
+                out.update(zip(fresh, self._filtered(problem, piece, motion, fresh), strict=True))
+        if self._size * sum(p.keep.size for p in (*problem.fit, *problem.holdout)) <= MOST_KEPT:
+            piece.columns.update((keys[i], x) for i, x in out.items())
+        return out
+
+    def _filtered(
+        self, problem: Problem, piece: Segment, motion: Motion, indices: Sequence[int]
+    ) -> Iterator[np.ndarray]:
+        columns = [self._columns(i, motion, problem.known) for i in indices]
+        flat = problem.reduce(piece, np.hstack([x.reshape(len(x), -1) for x in columns]))
+        at = 0
+        for x in columns:
+            width = int(np.prod(x.shape[1:]))
+            yield np.ascontiguousarray(flat[:, at : at + width]).reshape(len(flat), *x.shape[1:])
+            at += width
+
+    @cached_property
+    def _size(self) -> int:
+        """Bytes of all columns of one sample."""
+        return 8 * sum(
+            w * (self.n_dof if h.law.reaches_all else 1) for w, h in zip(self.widths, self.hypotheses, strict=True)
+        )
+
+    def _follows_from(self, problem: Problem, index: int) -> Hashable:
+        """What the columns of a hypothesis follow from, on a given piece."""
+        h = self.hypotheses[index]
+        sign = tuple(None if x is None else x.tobytes() for x in (problem.slow, problem.straight, problem.held))
+        known = problem.known if h.law.uses_load or h.effect in (*BODIES, GravityTilt.name) else ()
+        return h, sign, tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
 
     def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
         h = self.hypotheses[index]
