@@ -2,41 +2,86 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from lagnet.diagnosis.estimation.gauss_newton import GaussNewton
 from lagnet.diagnosis.estimation.nearest_body import body_before, nearest_body
-from lagnet.diagnosis.regression.normal_equations import inverse, leaves_open, normal
+from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse, leaves_open, normal
 from lagnet.effects.catalogue import effect_named
 from lagnet.rigid_body.inertia import is_physically_consistent
 
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 
 
+@dataclass(frozen=True, eq=False)
+class _Tangent:
+    """Half the squared error as a quadratic about a point: ½ (x − x₀)ᵀ G (x − x₀) + mᵀ(x − x₀)."""
+
+    work: GaussNewton
+    point: np.ndarray
+    gram: np.ndarray
+    moment: np.ndarray
+
+    def settled(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """The least squares of the free coordinates within their bounds, the others as they are in x."""
+        if not free.any():
+            return x
+        lower, upper = (b[free] for b in self.work.slots.bounds())
+        slope = (self.moment + self.gram @ (x - self.point))[free]
+        out = x.copy()
+        step = bounded_step(self.gram[np.ix_(free, free)], -slope, lower - x[free], upper - x[free])
+        out[free] = np.clip(x[free] + step, lower, upper)
+        return out
+
+    def told(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Information on a body: (10, 10) with all else refitted around it, diagonal (10,) with all else known."""
+        rest = np.setdiff1d(np.arange(len(self.gram)), own)
+        cross = self.gram[np.ix_(own, rest)]
+        around = cross @ inverse(self.gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0
+        schur = self.gram[np.ix_(own, own)] - around
+        return 0.5 * (schur + schur.T), np.diag(self.gram)[own]
+
+
+def _tangent(work: GaussNewton, x: np.ndarray) -> _Tangent:
+    return _Tangent(work, x, *normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x)))
+
+
 def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
     """Replaces bodies that are not consistent or not determined by the nearest consistent ones, and refits all else.
 
-    Making one body real moves the others, so each is given a second chance; from then on it is held.
+    Making one body real moves the others, so each is given a second chance; from then on it is held. The others follow
+    along the tangent, and by the exact laws at the end.
     """
     tried, held = set[int](), np.zeros(x.size, dtype=bool)
-    while (n := _body_to_move(work, x, tried)) is not None:
-        own = _own(work, x, n)
-        x = x.copy()
-        x[own] = _near(work, x, n)
-        held[own] = n in tried
-        tried.add(n)
-        x = work.descend(x, ~(held | np.isin(np.arange(x.size), own)))
-    return x
+    if not any(effect_named(e.effect).is_body for e in work.slots.effects):
+        return x
+    while True:
+        tangent, fixed = _tangent(work, x), held.copy()
+        moved = False
+        while (n := _body_to_move(tangent, x, tried)) is not None:
+            own = _own(work, x, n)
+            x = x.copy()
+            x[own] = _near(tangent, x, n)
+            held[own] = n in tried
+            tried.add(n)
+            fixed[own] = moved = True
+            x = tangent.settled(x, ~(held | np.isin(np.arange(x.size), own)))
+        if not moved:
+            return x
+        x = work.descend(x, ~(held | fixed))
 
 
-def _body_to_move(work: GaussNewton, x: np.ndarray, tried: set[int]) -> int | None:
+def _body_to_move(tangent: _Tangent, x: np.ndarray, tried: set[int]) -> int | None:
     """The first effect whose body is not physically consistent, or whose link the recordings do not determine."""
+    work = tangent.work
     for n, effect in enumerate(work.slots.effects):
         if not effect_named(effect.effect).is_body:
             continue
         if not is_physically_consistent(body_before(work.problem, effect) + x[_own(work, x, n)]):
             return n
-        if effect_named(effect.effect).changes_link and n not in tried and _is_open(work, x, n):
+        if effect_named(effect.effect).changes_link and n not in tried and leaves_open(*tangent.told(_own(work, x, n))):
             return n
     return None
 
@@ -45,21 +90,7 @@ def _own(work: GaussNewton, x: np.ndarray, n: int) -> np.ndarray:
     return np.arange(x.size)[work.slots.of(n)][:BODY]
 
 
-def _is_open(work: GaussNewton, x: np.ndarray, n: int) -> bool:
-    return leaves_open(*_told(work, x, n))
-
-
-def _near(work: GaussNewton, x: np.ndarray, n: int) -> np.ndarray:
+def _near(tangent: _Tangent, x: np.ndarray, n: int) -> np.ndarray:
     """Coordinates of the nearest consistent body, all else being refitted around it."""
-    base = body_before(work.problem, work.slots.effects[n])
-    return nearest_body(_told(work, x, n)[0], base + x[_own(work, x, n)], base) - base
-
-
-def _told(work: GaussNewton, x: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Information on a body: (10, 10) with all else refitted around it, diagonal (10,) with all else known."""
-    own = _own(work, x, n)
-    gram, _ = normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x))
-    rest = np.setdiff1d(np.arange(x.size), own)
-    cross = gram[np.ix_(own, rest)]
-    schur = gram[np.ix_(own, own)] - (cross @ inverse(gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0)
-    return 0.5 * (schur + schur.T), np.diag(gram)[own]
+    own, base = _own(tangent.work, x, n), body_before(tangent.work.problem, tangent.work.slots.effects[n])
+    return nearest_body(tangent.told(own)[0], base + x[own], base) - base

@@ -11,7 +11,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.model import NamedEffect
-from lagnet.models.corrected.tilted_bodies import tilted_weight
+from lagnet.models.corrected.tilted_bodies import TILT, tilted_weight
 
 Change = dict[int, np.ndarray]
 """Torque by joint, each of shape (n,) [N m]; joints that are not in it have none."""
@@ -55,8 +55,7 @@ class Superposition:
         stage = effect_named(other.effect).stage
         change = _minus(_by_joint(other.added(self._motion.with_load(self._parts[n].seen))), self._parts[n].added)
         if stage == "body":
-            effects = (*self._effects[:n], other, *self._effects[n + 1 :])
-            tilted = tilted_weight(self._motion, effects) - self._tilted
+            tilted = self._tilted_change(n, other)
             change = _minus(change, {} if np.ndim(tilted) == 0 else _by_joint(-np.asarray(tilted)))
             for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the bodies alone
                 change = _minus(change, {j: -x for j, x in after.items()})
@@ -64,6 +63,15 @@ class Superposition:
             if stage != "signal" or m > n:
                 change = _minus(change, {j: -x for j, x in self._answer(m, change).items()})
         return change
+
+    def _tilted_change(self, n: int, other: NamedEffect) -> np.ndarray | float:
+        """What changes of the weight of changed bodies in a changed field; it is linear in each body."""
+        if effect_named(other.effect).is_body:
+            tilts = [e for e in self._effects if e.effect == TILT]
+            return tilted_weight(self._motion, [other, *tilts]) - tilted_weight(
+                self._motion, [self._effects[n], *tilts]
+            )
+        return tilted_weight(self._motion, (*self._effects[:n], other, *self._effects[n + 1 :])) - self._tilted
 
     def _of(self, stage: Stage) -> list[int]:
         return [n for n, e in enumerate(self._effects) if effect_named(e.effect).stage == stage]

@@ -33,6 +33,7 @@ class Candidate:
         selection: the hypotheses, with the coefficients of the linear fit.
         noise: shape (dof,), noise floor [N m].
         seed: of everything random.
+        start: effects of the refit before, from which the next one starts.
         residuals: r by part and effects, computed once; shared by all candidates of one diagnosis.
     """
 
@@ -42,6 +43,7 @@ class Candidate:
     selection: Selection
     noise: np.ndarray
     seed: int
+    start: tuple[NamedEffect, ...] = ()
     residuals: dict = field(default_factory=dict, repr=False)
 
     @property
@@ -67,7 +69,9 @@ class Candidate:
     @cached_property
     def refit(self) -> Refit:
         """The selection fitted by the exact laws, all parameters together."""
-        return refit(self.problem, named_effects(self.library, self.selection), self.sigma)
+        known = {(e.effect, e.joint): e for e in self.start}
+        found = named_effects(self.library, self.selection)
+        return refit(self.problem, [known.get((e.effect, e.joint), e) for e in found], self.sigma)
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -106,4 +110,6 @@ class Candidate:
         local = tuple(
             (*(i for i in own if i not in indices), *(instead if first & {*own} else ())) for own in found.local
         )
-        return replace(self, selection=refit_selection(self.equations, replace(found, arm_wide=arm_wide, local=local)))
+        start = self.refit.effects if "refit" in self.__dict__ else self.start
+        selection = refit_selection(self.equations, replace(found, arm_wide=arm_wide, local=local))
+        return replace(self, selection=selection, start=start)

@@ -72,7 +72,9 @@ def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = motion.n_dof - 1 if body.joint is None else body.joint
-    return np.einsum("gnji,i,g->nj", _fields_of(motion, link), _law(body).coordinates(body.values), gravity)
+    weights = np.asarray(_law(body).coordinates(body.values))
+    field = np.tensordot(gravity, _fields_of(motion, link), 1)
+    return (field.reshape(-1, weights.size) @ weights).reshape(field.shape[:-1])
 
 
 def _fields_of(motion: Motion, link: int) -> np.ndarray:
