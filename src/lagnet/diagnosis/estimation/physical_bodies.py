@@ -13,6 +13,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.rigid_body.inertia import is_physically_consistent
 
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
+LOST = 1.5  # times the squared error before, from which consistent bodies fit too badly
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +52,25 @@ def _tangent(work: GaussNewton, x: np.ndarray) -> _Tangent:
 def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
     """Replaces bodies that are not consistent or not determined by the nearest consistent ones, and refits all else.
 
-    Making one body real moves the others, so each is given a second chance; from then on it is held. The others follow
-    along the tangent, and by the exact laws at the end.
+    A body far away may be the nearest along the tangent and yet fit nothing by the exact laws, such as a mass that
+    pays for moments of inertia and turns with a tilted base. Then links that are not consistent stay as modelled.
     """
-    tried, held = set[int](), np.zeros(x.size, dtype=bool)
     if not any(effect_named(e.effect).is_body for e in work.slots.effects):
         return x
+    before, nearest = work.error(x), _with_nearest(work, x)
+    after = work.error(nearest)
+    if after <= LOST * before:
+        return nearest
+    modelled = _as_modelled(work, x)
+    return modelled if work.error(modelled) < after else nearest
+
+
+def _with_nearest(work: GaussNewton, x: np.ndarray) -> np.ndarray:
+    """Making one body real moves the others, so each is given a second chance; from then on it is held.
+
+    The others follow along the tangent, and by the exact laws at the end.
+    """
+    tried, held = set[int](), np.zeros(x.size, dtype=bool)
     while True:
         tangent, fixed = _tangent(work, x), held.copy()
         moved = False
@@ -73,15 +87,36 @@ def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
         x = work.descend(x, ~(held | fixed))
 
 
+def _as_modelled(work: GaussNewton, x: np.ndarray) -> np.ndarray:
+    """Bodies that are not consistent without any change, all else refitted around them."""
+    held = np.zeros(x.size, dtype=bool)
+    while True:
+        wrong = [n for n in _bodies(work) if not held[_own(work, x, n)].any() and not _is_consistent(work, x, n)]
+        if not wrong:
+            return x
+        own = np.concatenate([_own(work, x, n) for n in wrong])
+        x, held = x.copy(), held.copy()
+        x[own], held[own] = 0.0, True
+        x = work.descend(x, ~held)
+
+
+def _bodies(work: GaussNewton) -> list[int]:
+    return [n for n, e in enumerate(work.slots.effects) if effect_named(e.effect).is_body]
+
+
+def _is_consistent(work: GaussNewton, x: np.ndarray, n: int) -> bool:
+    base = body_before(work.problem, work.slots.effects[n])
+    return bool(is_physically_consistent(base + x[_own(work, x, n)]))
+
+
 def _body_to_move(tangent: _Tangent, x: np.ndarray, tried: set[int]) -> int | None:
     """The first effect whose body is not physically consistent, or whose link the recordings do not determine."""
     work = tangent.work
-    for n, effect in enumerate(work.slots.effects):
-        if not effect_named(effect.effect).is_body:
-            continue
-        if not is_physically_consistent(body_before(work.problem, effect) + x[_own(work, x, n)]):
+    for n in _bodies(work):
+        if not _is_consistent(work, x, n):
             return n
-        if effect_named(effect.effect).changes_link and n not in tried and leaves_open(*tangent.told(_own(work, x, n))):
+        link = effect_named(work.slots.effects[n].effect).changes_link
+        if link and n not in tried and leaves_open(*tangent.told(_own(work, x, n))):
             return n
     return None
 

@@ -15,6 +15,7 @@ from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.model import NamedEffect, torque_with
 
+SILENT = 1e-3  # of the least power that is claimed: the others fit as well without it
 UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of its absence: it goes before all others
 
 
@@ -29,6 +30,7 @@ class NegligibleTorque(RejectionRule):
     )
     source: ClassVar[str] = ""
     after_each_fit: ClassVar[bool] = True
+    together: ClassVar[bool] = True
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         sizes = self.sizes(candidate.problem, candidate.effects)
@@ -38,7 +40,8 @@ class NegligibleTorque(RejectionRule):
         ]
         ranked = [s * UNDETERMINED if u else s for s, u in zip(sizes, undetermined, strict=True)]
         small = sorted((n for n, size in enumerate(ranked) if size < 1.0), key=lambda n: ranked[n])
-        return tuple(self._rejection(candidate, n, sizes[n], undetermined[n]) for n in small)
+        silent = [n for n in small if sizes[n] < SILENT]  # without these nothing changes; else one at a time
+        return tuple(self._rejection(candidate, n, sizes[n], undetermined[n]) for n in silent or small[:1])
 
     def _rejection(self, candidate: Candidate, n: int, size: float, undetermined: bool) -> Rejection:
         detail = f"the power of its torque is {size:.3g} times the least that is claimed"
