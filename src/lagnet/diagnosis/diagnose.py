@@ -123,8 +123,9 @@ def diagnose(
 
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     state = with_misspecification(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
-    verdict, evidence = compose_verdict(state, fit_on, held), collect_report_data(state, fit_on, held)
     correction = correct(state, held, ends_of)
+    evidence = collect_report_data(state, fit_on, held, correction.model)
+    verdict = compose_verdict(state, fit_on, held)
     verdict = with_layers(verdict, correction.errors, correction.identified, correction.model)
     verdict = with_data_quality(verdict, data.findings)
     conditioned = state.holdout

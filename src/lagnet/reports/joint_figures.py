@@ -9,27 +9,27 @@ import numpy as np
 from lagnet.diagnosis.verdict.report_data import HeldOutSeries, JointEvidence
 from lagnet.reports.decimation import broken, chosen_samples, cloud_budget, end_to_end, scattered, series_budget
 from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed, plain
-from lagnet.reports.wording import effect_words, file_name, listed
+from lagnet.reports.wording import effect_words, file_name, listed, shortened
 
 WINDOW, WINDOW_SHOWN_WHOLE = 20.0, 30.0  # seconds shown at first of a recording longer than the second figure
+NAME_WIDTH = 24  # characters of a motion's name
 MOTIONS_MARKED = 12  # more starts of motions than this would only clutter the plot
 
 
 def torque_over_time(key: str, joint: JointEvidence, n_joints: int) -> Figure | None:
-    """Measured, nominal and corrected torque on the held-out recordings."""
+    """Measured torque on the held-out recordings, and that of the nominal model, the named effects and all layers."""
     series = joint.held_out
     if series is None or len(series.time) == 0:
         return None
     chosen = chosen_samples(series, series_budget(n_joints))
     time, starts, moved = end_to_end(series)
     x = packed(broken(time, series, chosen))
-    lines = [("measured", 4.0), ("nominal", 1.5), ("corrected", 1.5)]
-    if np.array_equal(series.nominal, series.corrected):
-        lines.pop()  # nothing was named on this joint
     traces = [
-        _line(SAME_X if index else x, packed(broken(np.asarray(getattr(series, role)), series, chosen)), role, width)
-        for index, (role, width) in enumerate(lines)
+        {**_line(x, packed(broken(np.asarray(values), series, chosen)), role, 1.5 if n else 4.0), "name": words}
+        for n, (words, role, values) in enumerate(_lines(series))
     ]
+    for trace in traces[1:]:
+        trace["x"] = SAME_X
     layout = {
         "xaxis": axis("time, motions laid end to end" if moved else "time", "s", **_window(series, time)),
         "yaxis": axis(_torque(joint), joint.unit),
@@ -42,6 +42,16 @@ def torque_over_time(key: str, joint: JointEvidence, n_joints: int) -> Figure | 
     return Figure(key, traces, f"Measured, nominal and corrected torque of {joint.joint} over time", layout)
 
 
+def _lines(series: HeldOutSeries) -> list[tuple[str, str, Any]]:
+    """Name, colour and values of each line; of the layers those that change the torque of this joint."""
+    lines = [("measured", "measured", series.measured), ("nominal", "nominal", series.nominal)]
+    if not np.array_equal(series.nominal, series.corrected):
+        lines.append(("named", "corrected", series.corrected))
+    if series.full is not None and not np.array_equal(series.full, series.corrected):
+        lines.append(("all layers", "series-7", series.full))
+    return lines
+
+
 def residual_by_velocity(key: str, joint: JointEvidence, n_joints: int) -> Figure | None:
     """What each model misses at each velocity, and the friction law that was fitted to it."""
     cloud = joint.residual
@@ -51,7 +61,8 @@ def residual_by_velocity(key: str, joint: JointEvidence, n_joints: int) -> Figur
     x = packed(np.asarray(cloud.velocity)[chosen])
     traces = [_dots(x, packed(np.asarray(cloud.nominal)[chosen]), "nominal")]
     if not np.array_equal(cloud.nominal, cloud.corrected):
-        traces.append(_dots(SAME_X, packed(np.asarray(cloud.corrected)[chosen]), "corrected"))
+        named = _dots(SAME_X, packed(np.asarray(cloud.corrected)[chosen]), "corrected")
+        traces.append({**named, "name": "residual, named"})
     if joint.law is not None:
         traces.append(_law(joint))
     layout = {
@@ -134,11 +145,7 @@ def _names(series: HeldOutSeries, starts: np.ndarray) -> list[dict[str, Any]]:
     return [
         {
             "x": float(t), "y": 1, "yref": "paper", "yanchor": "bottom", "xanchor": "left", "showarrow": False,
-            "text": plain(_shortened(file_name(name))), "font": {"size": 11, "color": colour("quiet")},
+            "text": plain(shortened(file_name(name), NAME_WIDTH)), "font": {"size": 11, "color": colour("quiet")},
         }
         for t, name in zip(starts, series.names, strict=True)
     ]  # fmt: skip
-
-
-def _shortened(name: str, width: int = 24) -> str:
-    return name if len(name) <= width else f"{name[: width // 2 - 1]}…{name[-width // 2 :]}"

@@ -78,6 +78,11 @@ def file_name(path: str) -> str:
     return re.split(r"[\\/]", path.rstrip("\\/"))[-1] or path
 
 
+def shortened(name: str, width: int) -> str:
+    """A name of at most so many characters, a long one without its middle."""
+    return name if len(name) <= width else f"{name[: width // 2 - 1]}…{name[-(width // 2) :]}"
+
+
 def breakable(name: str) -> Markup:
     """A long name that may break behind its underscores; short ones stay whole, so that they can be searched for."""
     if len(name) <= LONGEST_WHOLE_NAME:

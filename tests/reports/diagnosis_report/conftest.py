@@ -208,6 +208,39 @@ def six_joints() -> Case:
     return case
 
 
+def layered() -> Case:
+    """An arm of six joints with all layers: friction named, bodies and curves identified, a remainder learned."""
+    case = six_joints()
+    for number, fit in enumerate(case.verdict["fit"]):
+        fit["nmse_identified"] = fit["nmse_named"] * (0.5 if number < 4 else 1.0)
+        fit["nmse_full"] = fit["nmse_identified"] * (0.8 if number == 2 else 1.0)
+        fit["nmse_named_and_residual_network"] = fit["nmse_full"]
+    long = "I_zz(elbow) + 0.31 mc_x(wrist_1) - 0.2 m(wrist_1) + 1 I_yy(wrist_1) + 0.02 m(wrist_2) - 0.01 m(wrist_3)"
+    bodies = [
+        {"combination": long, "link": "elbow", "change": 0.41, "unit": "kg m²", "ci95": [0.37, 0.45],
+         "share_of_torque": 0.12},
+        *({"combination": f"mc_x({joint})", "link": joint, "change": -0.2, "unit": "kg m", "ci95": [-0.25, -0.15],
+           "share_of_torque": 0.05} for joint in UR_JOINTS),
+        *({"combination": f"mc_y({joint})", "link": joint, "change": 0.1, "unit": "kg m", "ci95": [0.05, 0.15],
+           "share_of_torque": 0.03} for joint in UR_JOINTS),
+    ]  # fmt: skip
+    speed = np.r_[-1.0, -0.5, -0.1, 0.1, 0.5, 1.0]
+    own = [
+        {"joint": joint,
+         "terms": [{"term": "dry", "scale": 1.0, "weight": 0.8, "ci95": [0.7, 0.9]},
+                   {"term": "rotor", "scale": 1.0, "weight": 0.03, "ci95": [0.01, 0.05]}],
+         "friction_curve": {"speed": speed.tolist(), "torque": (0.8 * np.sign(speed) + 0.3 * speed**3).tolist()}}
+        for joint in UR_JOINTS[:4]
+    ]  # fmt: skip
+    case.verdict["identified"] = {
+        "bodies": bodies, "undetermined": ["m(shoulder_pan)", long], "joints": own,
+        "ties": [{"joints": ["wrist_1", "wrist_2"], "term": "cross_viscous", "weight": 0.7}],
+        "samples_that_count_as_one": 12.0,
+        "words": "The inertia of the links behind elbow and wrist_1 differs from the model's.",
+    }  # fmt: skip
+    return case
+
+
 def slide() -> Case:
     return diagnosis_of([Joint("slide", 203.5, 20.4, 60.0, "N")])
 
@@ -244,6 +277,7 @@ def verdict_alone() -> Case:
 
 CASES: dict[str, Callable[[], Case]] = {
     "six_joints": six_joints,
+    "layered": layered,
     "slide": slide,
     "eight_long_names": eight_long_names,
     "no_mismatch": no_mismatch,
@@ -262,6 +296,12 @@ def case(request: pytest.FixtureRequest) -> Case:
 def six() -> Case:
     """An arm of six joints with friction on four of them, a tie, an abstention and a remainder."""
     return six_joints()
+
+
+@pytest.fixture(scope="session")
+def all_layers() -> Case:
+    """The same arm with something in every layer of the correction."""
+    return layered()
 
 
 @pytest.fixture(scope="session")

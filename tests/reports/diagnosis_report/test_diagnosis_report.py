@@ -167,7 +167,8 @@ def test_page_opens_without_errors(case, tmp_path, browse):
     assert seen.console == ()
     assert seen.requests == ()
     curves = 2 * any(entry.held_out for entry in case.evidence.joints)
-    assert seen.drawn == curves + 1 + bool(case.verdict["effects"])  # one joint is shown; fit; rivals
+    identified = bool(case.verdict.get("identified"))
+    assert seen.drawn == curves + 1 + bool(case.verdict["effects"]) + identified  # one joint is shown; fit; rivals
     assert seen.dom.count('class="main-svg"') >= seen.drawn
     for effect in case.verdict["effects"]:
         assert effect["effect"] in seen.text

@@ -13,7 +13,8 @@ from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
 
 SURE = 1.96  # standard deviations of a 95 % interval
 NOTABLE = 0.02  # of a joint's torque: a smaller change is not worth a line
-SPEEDS = 21  # points of a friction curve
+SPEEDS = 20  # points of a friction curve in each direction, closer near rest, where it bends; rest itself is a jump
+NAMED_OPEN = 3  # combinations left open that a sentence names, each by its first parameter
 UNITS = ("kg", *("kg m",) * 3, *("kg m²",) * 6)
 
 
@@ -94,8 +95,9 @@ def _curve(found: Identified, joint: int) -> dict[str, list[float]]:
     pairs = zip(found.layer.terms, found.layer.weights, strict=True)
     terms = [(t, w) for t, w in pairs if t.joint == joint and t.other is None]
     top = max((t.scale for t, _ in terms if t.kind in BENDS), default=1.0)
-    speed = np.linspace(-top, top, SPEEDS)
-    sign, torque = np.sign(speed), np.zeros(SPEEDS)
+    ahead = top * (np.arange(1, SPEEDS + 1) / SPEEDS) ** 2
+    speed = np.concatenate([-ahead[::-1], ahead])
+    sign, torque = np.sign(speed), np.zeros(speed.size)
     for term, weight in terms:
         if term.kind in BENDS:
             torque = torque + weight * bend(BENDS[term.kind], speed / term.scale, sign)
@@ -126,8 +128,11 @@ def _words(bodies: list, open_ones: list, own: list, ties: list) -> str:
         tied = list(dict.fromkeys(" and ".join(t["joints"]) for t in ties))
         parts.append(f"The motors of {_listed(tied)} are coupled.")
     if open_ones:
-        more = ", ".join(open_ones[:3])
-        parts.append(f"This motion says nothing of {more}: faster motion of all joints at once would.")
+        more = ", ".join(text.split(" ")[0] for text in open_ones[:NAMED_OPEN])
+        rest = f" and {len(open_ones) - NAMED_OPEN} more" if len(open_ones) > NAMED_OPEN else ""
+        parts.append(
+            f"This motion says nothing of {more}{rest}, alone or combined: faster motion of all joints at once would."
+        )
     return " ".join(parts) or NOTHING
 
 

@@ -29,20 +29,29 @@ from lagnet.diagnosis.verdict.report_data import (
 )
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import torque_with
+from lagnet.models.corrected.model import CorrectedModel, torque_with
 from lagnet.recordings.recording import Recording
 
 PACKAGES = ("numpy", "scipy", "pin", "scikit-learn")
 CURVE = 201  # points of a drawn law
 
 
-def collect_report_data(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> ReportData:
-    """All curves of one diagnosis."""
+def collect_report_data(
+    state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording], model: CorrectedModel
+) -> ReportData:
+    """All curves of one diagnosis.
+
+    Args:
+        state: what its steps found.
+        fit, held: recordings.
+        model: the correction with all its layers.
+    """
     problem = state.problem
     motions = [replace(p.motion(problem), recorded=None) for p in problem.holdout]
     corrected = [torque_with(m, state.effects) for m in motions]
+    full = _all_layers(problem, model)
     return ReportData(
-        joints=tuple(_joint(state, corrected, held, j) for j in range(problem.n_dof)),
+        joints=tuple(_joint(state, corrected, full, held, j) for j in range(problem.n_dof)),
         comparisons=_comparisons(state),
         skeleton=_skeleton(problem),
         motion=_motion(problem, corrected),
@@ -53,7 +62,23 @@ def collect_report_data(state: DiagnosisState, fit: Sequence[Recording], held: S
     )
 
 
-def _joint(state: DiagnosisState, corrected: list[np.ndarray], held: Sequence[Recording], joint: int) -> JointEvidence:
+def _all_layers(problem: Problem, model: CorrectedModel) -> list[np.ndarray] | None:
+    """Low-passed torque of the whole correction on each held-out piece; None where it is the named effects alone."""
+    if model.identified is None and model.remainder is None:
+        return None
+    return [
+        problem.reduce(p, replace(model, recording=p.origin).torque_along(p.time, p.q, p.v, p.a))
+        for p in problem.holdout
+    ]
+
+
+def _joint(
+    state: DiagnosisState,
+    corrected: list[np.ndarray],
+    full: list[np.ndarray] | None,
+    held: Sequence[Recording],
+    joint: int,
+) -> JointEvidence:
     problem, left = state.problem, state.remainders[joint]
     series = [
         (p.time[p.keep], *(problem.reduce(p, x)[:, joint] for x in (p.tau, p.load, c)))
@@ -73,6 +98,7 @@ def _joint(state: DiagnosisState, corrected: list[np.ndarray], held: Sequence[Re
             best,
             tuple((int(a), int(b)) for a, b in pairwise(edges)),
             names,
+            None if full is None else np.concatenate([x[:, joint] for x in full]),
         ),
         residual=ResidualByVelocity(v, measured - nominal, measured - best),
         law=_law(state, joint),

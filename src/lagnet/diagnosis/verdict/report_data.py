@@ -20,7 +20,7 @@ from lagnet.types import Samples
 
 @dataclass(frozen=True)
 class HeldOutSeries:
-    """Torque of one joint on the held-out recordings, all three lines through the same zero-phase filter.
+    """Torque of one joint on the held-out recordings, all lines through the same zero-phase filter.
 
     Args:
         time: t, shape (n,) [s], increasing within a segment; every recording may start anew.
@@ -29,6 +29,7 @@ class HeldOutSeries:
         corrected: torque of the nominal model with the named effects, shape (n,) [N m or N].
         segments: (start, stop) of each unbroken motion, as sample indices; one segment of all samples if empty.
         names: a name for each segment, such as its recording; may be empty.
+        full: torque of all layers of the correction, shape (n,) [N m or N]; None where only the named one has any.
     """
 
     time: Samples
@@ -37,6 +38,7 @@ class HeldOutSeries:
     corrected: Samples
     segments: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = ()
+    full: Samples | None = None
 
 
 @dataclass(frozen=True)

@@ -12,24 +12,39 @@ from lagnet.reports.wording import percent, wrapped
 
 KINDS = (
     ("nmse_nominal", "nominal model", "nominal"),
-    ("nmse_named", "with the named physics", "corrected"),
-    ("nmse_named_and_residual_network", "with a residual network too", "law"),
+    ("nmse_named", "named", "corrected"),
+    ("nmse_identified", "named and identified", "series-7"),
+    ("nmse_full", "with learned remainder", "law"),
 )
+MEANING = {
+    "nmse_named": "Named: with the effects that the verdict names.",
+    "nmse_identified": "Identified: with all else that the recordings determine, whatever its cause.",
+    "nmse_full": "With learned remainder: with small networks beyond that, where unseen motion gains from them.",
+}
 NAME_WIDTH = 20  # characters in a line
 MOST_TICKS = 7  # whose percentages have room beside each other
 SMALLEST = 1e-6  # a bar on a logarithmic axis cannot reach zero
 
 
 def build(findings: Findings) -> Section | None:
-    """Bars for each joint, best read from right to left: the shorter, the better."""
+    """Bars of every layer of the correction for each joint: the shorter, the better."""
     fits = findings.verdict["fit"]
     if not fits:
         return None
-    kinds = [kind for kind in KINDS if any(fit[kind[0]] is not None for fit in fits)]
-    if not findings.effects:
-        kinds = [kind for kind in kinds if kind[0] != "nmse_named"]  # the same as the nominal model
+    kinds = layers_of(fits)
+    meanings = [MEANING[key] for key, *_ in kinds if key in MEANING]
     figure = _figure(fits, kinds)
-    return section("fit", "Fit on held-out recordings", [figure], half=True, fits=fits, kinds=kinds)
+    return section("fit", "Fit on held-out recordings", [figure], half=True, fits=fits, kinds=kinds, meanings=meanings)
+
+
+def layers_of(fits: list[dict[str, Any]]) -> list[tuple[str, str, str]]:
+    """The nominal model, and the layers that change the error of some joint: an empty one has the error before it."""
+    kinds, before = [KINDS[0]], KINDS[0][0]
+    for kind in KINDS[1:]:
+        if any(fit.get(kind[0]) is not None and fit[kind[0]] != fit[before] for fit in fits):
+            kinds.append(kind)
+            before = kind[0]
+    return kinds
 
 
 def _figure(fits: list[dict[str, Any]], kinds: list[tuple[str, str, str]]) -> Figure:

@@ -8,6 +8,7 @@ from lagnet.reports.figures import Figure
 from lagnet.reports.findings import Findings
 from lagnet.reports.joint_figures import residual_by_velocity, torque_over_time
 from lagnet.reports.page import Section, section
+from lagnet.reports.sections.fit import layers_of
 
 
 def build(findings: Findings) -> Section:
@@ -19,7 +20,7 @@ def build(findings: Findings) -> Section:
         "Joint by joint, on held-out recordings",
         figures,
         panels=panels,
-        any_effects=bool(findings.effects),
+        kinds=layers_of(findings.verdict["fit"]),
         first=_most_telling(findings),
         bandwidth=findings.verdict["conditioning"]["bandwidth_hz"],
     )
