@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from lagnet.diagnosis.verdict.verdict import NamedParameter
-from lagnet.diagnosis.verdict.wording import percent, values
+from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, JointFit, NamedParameter
+from lagnet.diagnosis.verdict.wording import percent, values, whole_error_words
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,23 @@ def test_a_sentence_tells_what_the_recordings_determine() -> None:
     open_, told = NamedParameter("dm", 1.5, "kg", (-2e6, 2e6)), NamedParameter("dmcx", 0.25, "kg m", (0.2, 0.3))
     assert values([open_, told]) == "dmcx = 0.25 kg m"
     assert values([open_]) == "dm = 1.5 kg"
+
+
+def effect_at(joint: str | None, left: float, interval: tuple[float, float] | None = None) -> EffectFound:
+    return EffectFound("payload", joint, "named", (), (), EffectEvidence(0.5, left, 0.5, None, None), "", interval)
+
+
+FITS = (JointFit("base", 0.5, 0.08, None, 1e-6), JointFit("elbow", 0.6, 0.9, None, 1e-6))
+
+
+def test_the_error_over_all_samples_is_told_where_rest_changes_it() -> None:
+    assert whole_error_words(effect_at("base", 0.0801), FITS) == ""
+    assert whole_error_words(effect_at("base", 0.005), FITS).endswith("rest included, named physics leaves 8 % there.")
+
+
+def test_an_effect_of_the_whole_arm_names_the_worst_joint() -> None:
+    assert whole_error_words(effect_at(None, 0.005), FITS).endswith("leaves most at elbow: 90 %.")
+
+
+def test_what_acts_for_a_while_is_judged_in_that_time_alone() -> None:
+    assert whole_error_words(effect_at(None, 0.005, (1.0, 2.0)), FITS) == ""

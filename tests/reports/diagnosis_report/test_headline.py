@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 from types import SimpleNamespace
 
+from lagnet.reports.findings import Findings
+from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.sections import headline
 
 
@@ -16,3 +19,45 @@ def test_a_remainder_that_the_page_writes_as_nothing_is_not_in_the_headline() ->
     error = {"wrist": 5e-5, "elbow": 0.1, "base": 0.1}
     findings = SimpleNamespace(verdict={"unexplained": left}, fit=lambda joint: {"nmse_nominal": error[joint]})
     assert [entry["joint"] for entry in headline._remainder(findings)] == ["elbow"]
+
+
+def findings_of(case, **errors) -> Findings:
+    """The findings with other held-out errors, one for each joint."""
+    verdict = copy.deepcopy(case.verdict)
+    for key, values in errors.items():
+        for fit, value in zip(verdict["fit"], values, strict=True):
+            fit[key] = value
+    return Findings(verdict, case.evidence)
+
+
+def test_a_median_is_told_with_the_worst_joint_of_the_whole_arm(six) -> None:
+    nominal, named = [0.8, 0.6, 0.7, 0.5, 0.01, 0.02], [0.01, 0.03, 0.02, 0.04, 0.01, 1.65]
+    findings = findings_of(six, nmse_nominal=nominal, nmse_named=named, nmse_noise_floor=[1e-6] * 6)
+    assert error_falls(findings) == (
+        "Held-out torque error falls from 65 % to 2.5 % (median of the joints that differ; worst: wrist_3, 165 %)."
+    )
+
+
+def test_all_layers_are_told_beside_the_named_physics_with_a_worst_joint_of_their_own(six) -> None:
+    named, full = [0.04, 0.04, 0.04, 0.04, 0.1, 0.02], [0.02, 0.02, 0.02, 0.03, 0.01, 0.02]
+    findings = findings_of(
+        six, nmse_nominal=[0.5] * 6, nmse_named=named, nmse_identified=full, nmse_full=full, nmse_noise_floor=[1e-6] * 6
+    )
+    assert error_falls(findings) == (
+        "Held-out torque error falls from 50 % to 4.0 % (median of the joints that differ; worst: wrist_2, 10 %) "
+        "and to 2.0 % with all layers (worst: wrist_1, 3.0 %)."
+    )
+
+
+def test_a_worst_joint_that_is_mostly_noise_is_said_to_be(six) -> None:
+    findings = findings_of(six, nmse_named=[0.01] * 5 + [0.9], nmse_noise_floor=[0.001] * 5 + [0.88])
+    assert "worst: wrist_3, 90 %, noise alone 88 %" in error_falls(findings)
+
+
+def test_one_joint_has_neither_median_nor_worst(one_slide) -> None:
+    findings = findings_of(one_slide, nmse_nominal=[0.4], nmse_named=[0.02])
+    assert error_falls(findings) == "Held-out torque error falls from 40 % to 2.0 %."
+
+
+def test_a_layer_that_makes_the_median_worse_does_not_let_it_fall(one_slide) -> None:
+    assert "changes from 1.0 % to 2.0 %" in error_falls(findings_of(one_slide, nmse_nominal=[0.01], nmse_named=[0.02]))

@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.told import identified_as_json
 from lagnet.diagnosis.verdict.verdict import JointFit, Verdict
+from lagnet.diagnosis.verdict.wording import whole_error_words
 from lagnet.models.corrected.model import CorrectedModel
 
 
@@ -25,9 +26,9 @@ def with_layers(
         corrected: the model of all layers.
     """
     fits = tuple(_fit(fit, errors, j, corrected.remainder is not None) for j, fit in enumerate(verdict.fit))
-    return replace(
-        verdict, fit=fits, identified=identified_as_json(found, corrected.regressor_source, corrected.joints)
-    )
+    told = identified_as_json(found, corrected.regressor_source, corrected.joints)
+    effects = tuple(replace(e, explanation=e.explanation + whole_error_words(e, fits)) for e in verdict.effects)
+    return replace(verdict, fit=fits, effects=effects, identified=told)
 
 
 def _fit(fit: JointFit, errors: Mapping[str, np.ndarray], joint: int, learned: bool) -> JointFit:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from lagnet.diagnosis.estimation.gauss_newton import NOT_SAID
 from lagnet.diagnosis.identifiability.recording_advice import recording_against
-from lagnet.diagnosis.verdict.verdict import EffectEvidence, NamedParameter
+from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, JointFit, NamedParameter
 from lagnet.effects.effect import Effect
 from lagnet.recordings.conditioning.condition import Conditioned
 
@@ -58,6 +58,24 @@ def explain_transient(
     if tied:
         first += f" This time cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
     return first
+
+
+def whole_error_words(effect: EffectFound, fits: Sequence[JointFit]) -> str:
+    """What the named physics leaves over all held-out samples, where the effect's own figures do not say it.
+
+    The evidence on an effect leaves out samples at rest, and is a mean over the joints that an effect of the whole arm
+    reaches; `nmse_named` counts all samples, at its joint or, of the whole arm, at the worst one.
+    """
+    if effect.interval_s is not None or not fits:
+        return ""
+    own = [fit for fit in fits if fit.joint == effect.joint] or fits
+    worst = max(own, key=lambda fit: fit.nmse_named)
+    left = percent(worst.nmse_named)
+    if len(own) > 1:
+        return f" Over all held-out samples, named physics leaves most at {worst.joint}: {left}."
+    if left == percent(effect.evidence.holdout_nmse_with):
+        return ""
+    return f" Over all held-out samples, rest included, named physics leaves {left} there."
 
 
 def percent(share: float) -> str:

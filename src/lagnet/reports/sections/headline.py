@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from statistics import median
 from typing import Any
 
 from lagnet.reports.findings import Findings, place
+from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import counted, effect_words, listed, percent, unit_words, with_interval
 
@@ -42,8 +42,10 @@ def _sentences(findings: Findings) -> list[str]:
     where = f"{len(differing)} of {n} joints" if len(differing) < n else "its joint" if n == 1 else f"all {n} joints"
     sentences = [f"The arm differs from the model on {where}."]
     if not findings.effects:
-        return [*sentences, "No physics of the catalogue explains the difference beyond doubt.", *_unjudged(findings)]
-    return [*sentences, _left_out(findings), _improvement(findings)]
+        sentences += ["No physics of the catalogue explains the difference beyond doubt.", *_unjudged(findings)]
+    else:
+        sentences.append(_left_out(findings))
+    return [*sentences, *filter(None, [error_falls(findings)])]
 
 
 def _unjudged(findings: Findings) -> list[str]:
@@ -74,17 +76,6 @@ def _ties(effects: list[dict[str, Any]], before: str = "") -> str:
     rivals = dict.fromkeys(effect_words(rival) for effect in tied for rival in effect["tied_with"])
     where = f"on {listed([place(e['joint']) for e in tied])} " if len(tied) < len(effects) else ""
     return f"{before}{where}tied with {listed(list(rivals))}" if tied else ""
-
-
-def _improvement(findings: Findings) -> str:
-    fits = [findings.fit(joint) for joint in findings.differing or findings.joints]
-    before, after = [fit["nmse_nominal"] for fit in fits], [fit["nmse_named"] for fit in fits]
-    if len(fits) == 1:
-        return f"Held-out torque error falls from {percent(before[0])} to {percent(after[0])}."
-    return (
-        f"Held-out torque error falls from {percent(median(before))} to {percent(median(after))} "
-        f"(median of the joints that differ)."
-    )
 
 
 def _tiles(findings: Findings) -> list[dict[str, str]]:

@@ -15,6 +15,7 @@ def build(verdict: Mapping[str, Any], diagnosis: MotionDiagnosis) -> Section:
     """Errors before and after, and the named causes by joint."""
     fits = verdict["fit"]
     before, after = (float(np.sqrt(np.mean([f[k] ** 2 for f in fits]))) for k in ("rmse_nominal", "rmse_corrected"))
+    worst = max(fits, key=lambda f: f["rmse_corrected"])
     causes: dict[str, list[dict[str, Any]]] = {}
     for effect in verdict["effects"]:
         causes.setdefault(effect["joint"], []).append(effect)
@@ -30,6 +31,7 @@ def build(verdict: Mapping[str, Any], diagnosis: MotionDiagnosis) -> Section:
         state="found" if verdict["effects"] else "nothing",
         before=before,
         after=after,
+        worst=worst if len(fits) > 1 else None,
         recordings=len(diagnosis.holdout_recordings),
         causes=causes,
         source=source,
