@@ -1,0 +1,83 @@
+"""The learned remainder gains where a smooth torque is hidden, takes nothing of noise, and hangs on its seed alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.diagnosis.conftest import Plant
+
+from lagnet.diagnosis.identified.remainder import RemainderSettings, learn_remainder
+from lagnet.diagnosis.problem.problem import Problem, pose_problem
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.recordings.conditioning.condition import condition
+from lagnet.rigid_body.random_arm import random_arm
+
+SECONDS, FITTED = 40.0, 2600  # of one motion that repeats after ten seconds; samples of it that are fitted
+FEW = RemainderSettings(members=2, hidden=8, steps=60, most=300, anchors=100)
+MUCH_LESS = 0.5  # of the squared error, that ε may leave of a torque that is a smooth function of the positions
+FAR = 50.0  # times any speed of the training motion
+
+
+@pytest.fixture(scope="module")
+def arm():
+    """Two revolute joints."""
+    return random_arm(2, seed=12, kinds=("revolute",), fixed=False)
+
+
+def hidden(arm):
+    """A torque of the first joint that depends smoothly on both positions, as of a cable or a spring aside."""
+    size = 0.3 * Plant(arm).usual_torque()[0]
+    return lambda q, v, a, load: np.column_stack([size * np.sin(2.0 * q[:, 0]) * np.cos(q[:, 1]), np.zeros(len(q))])
+
+
+def posed(arm, laws=()) -> tuple[Problem, CorrectedModel]:
+    recording = Plant(arm, laws).record(1, SECONDS)
+    fit = condition([recording.rows(slice(0, FITTED))])
+    held = condition([recording.rows(slice(FITTED, None))], fit.bandwidth)
+    problem = pose_problem(arm, fit, held)
+    return problem, CorrectedModel(arm, (), problem.slow, straight=problem.straight)
+
+
+@pytest.fixture(scope="module")
+def learned(arm):
+    """A problem with a hidden torque, the mechanics, and the ε that was learned on it."""
+    problem, mechanics = posed(arm, [hidden(arm)])
+    return problem, mechanics, learn_remainder(problem, mechanics, seed=0)
+
+
+def unseen_errors(problem: Problem, model: CorrectedModel) -> np.ndarray:
+    """Mean squared held-out error of each joint."""
+    left = [problem.reduce(p, p.tau - model.torque_along(p.time, p.q, p.v, p.a)) for p in problem.holdout]
+    return np.mean(np.concatenate(left) ** 2, axis=0)
+
+
+def test_a_smooth_hidden_torque_is_learned_and_a_joint_with_noise_alone_is_left(learned) -> None:
+    problem, mechanics, epsilon = learned
+    before, after = (unseen_errors(problem, m) for m in (mechanics, replace(mechanics, remainder=epsilon)))
+    assert epsilon.share[0] > 0.0
+    assert after[0] < MUCH_LESS * before[0]
+    assert epsilon.share[1] == 0.0
+    assert after[1] == before[1]
+
+
+def test_it_is_silent_beyond_the_motion_that_it_was_trained_on(learned) -> None:
+    problem, _, epsilon = learned
+    q, v, a = (np.concatenate([getattr(p, name) for p in problem.fit]) for name in "qva")
+    assert np.any(epsilon.torque(q, v, a)[:, 0] != 0.0)
+    assert np.all(epsilon.torque(q, v + FAR * np.abs(v).max(), a) == 0.0)
+    assert np.all(epsilon.torque(q, v, a + FAR * np.abs(a).max()) == 0.0)
+
+
+def test_nothing_is_taken_where_there_is_only_noise(arm) -> None:
+    problem, mechanics = posed(arm)
+    assert learn_remainder(problem, mechanics, seed=0) is None
+
+
+def test_a_seed_gives_one_result_and_another_seed_another(arm) -> None:
+    problem, mechanics = posed(arm, [hidden(arm)])
+    first, again, other = (learn_remainder(problem, mechanics, seed, replace(FEW, gain=0.0)) for seed in (3, 3, 4))
+    assert all(np.array_equal(a, b) for a, b in zip(first.weights, again.weights, strict=True))
+    assert np.array_equal(first.share, again.share)
+    assert not np.array_equal(first.weights[0], other.weights[0])
