@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from lagnet.diagnosis.data_quality.inspect import screened_for
+from lagnet.diagnosis.data_quality.inspect import refused_with, screened_for
 from lagnet.diagnosis.holdout_torque import HoldoutTorque
 from lagnet.diagnosis.layers import correct
 from lagnet.diagnosis.nominal.axis_offsets import settle_axis_offsets
@@ -114,7 +114,8 @@ def diagnose(
         fit = condition(fit_on, band, shift)
         unseen = condition(held, fit.bandwidth, shift)
         posed = pose_problem(robot, fit, unseen, ends_of, limits)
-        refuse_other_conventions(posed)
+        with refused_with(data.findings):
+            refuse_other_conventions(posed)
         problem = replace(fit_sign_model(posed), missed=known)
         noise = noise_floor(problem, fit, seed)
         noise = noise if known is None else np.hypot(noise, known)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import html
 import re
 
 import pytest
@@ -42,7 +43,7 @@ def test_bars_hold_the_figures_of_the_verdict(all_layers) -> None:
 
 
 def test_what_differs_is_told_with_interval_and_share(all_layers) -> None:
-    body = str(identified.build(findings_of(all_layers)).body)
+    body = html.unescape(str(identified.build(findings_of(all_layers)).body))
     assert "0.410 ± 0.040" in body
     assert "12 %" in body
     assert all_layers.verdict["identified"]["words"] in body
@@ -59,7 +60,7 @@ def test_long_combinations_are_shortened_to_their_largest_factors_and_kept_whole
 
 
 def test_weaker_combinations_are_folded_and_none_is_lost(all_layers) -> None:
-    body = str(identified.build(findings_of(all_layers)).body)
+    body = html.unescape(str(identified.build(findings_of(all_layers)).body))
     n = len(all_layers.verdict["identified"]["bodies"])
     assert f"{n - identified.SHOWN} weaker combinations" in body
     assert body.count("kg m") >= n

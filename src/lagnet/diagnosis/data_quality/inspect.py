@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 
 from lagnet.diagnosis.data_quality.check import BETTER, Evidence, Reading
 from lagnet.diagnosis.data_quality.checks import CHECKS
+from lagnet.diagnosis.data_quality.effort import effort_findings
 from lagnet.diagnosis.data_quality.physics import left_by_physics
 from lagnet.diagnosis.data_quality.samples import look_at
+from lagnet.errors import DiagnosisError
 from lagnet.recordings.quality.finding import CERTAIN, Finding
 from lagnet.recordings.quality.screen import Screened, refuse_harmful, screen
 from lagnet.recordings.recording import Recording
@@ -57,8 +60,28 @@ def screened_for(recordings: Sequence[Recording], robot: Any) -> Inspected:
     return Inspected(kept, (*found, *read))
 
 
+@contextmanager
+def refused_with(findings: Sequence[Finding]) -> Iterator[None]:
+    """Adds what the data seem to hold to the refusal of recordings in another convention.
+
+    Raises:
+        DiagnosisError: the one that was raised within, with the findings that a diagnosis would tell as physics.
+    """
+    try:
+        yield
+    except DiagnosisError as error:
+        seen = "; ".join(f.detail for f in findings if f.harmful)
+        if not seen:
+            raise
+        step = f"{error.next_step}; as the data look, {seen}"
+        raise DiagnosisError(error.what, where=error.where, choices=error.choices, next_step=step) from error
+
+
 def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...]:
-    """The reading under which the recordings fit the model, if they do not as they are and there is one."""
+    """The reading under which the recordings fit the model, if they do not as they are and there is one.
+
+    If there is none, what the effort column holds, if that is no joint torque.
+    """
     series = look_at(recordings)
     if not series:
         return ()
@@ -71,7 +94,7 @@ def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...
                 tried.extend(check().readings(evidence))
         best = min(tried, key=lambda reading: reading.misfit * reading.prior, default=None)
         if best is None or not evidence.accepts(best) or not best.misfit < BETTER * left_by_physics(evidence):
-            return ()
+            return effort_findings(recordings, robot, evidence) if suspect else ()
     return (_finding(best, tried),)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.effort_column.finding import CANNOT_TELL, EffortFinding, EffortLimits
 from lagnet.diagnosis.effort_column.regressions import Fit, columns_of, fit
-from lagnet.diagnosis.effort_column.samples import FAST, EffortSamples, effort_samples
+from lagnet.diagnosis.effort_column.samples import FAST, MOST, EffortSamples, effort_samples
 from lagnet.diagnosis.effort_column.units import UnitOdds, unit_odds
 from lagnet.recordings.recording import Recording
 from lagnet.types import InverseDynamics
@@ -29,6 +29,8 @@ FULL_SCALES = (1.0, 100.0, 255.0, 885.0, 1000.0, 1023.0)  # of duty cycles: frac
 MOST_UNUSED = 12.0  # full scale over the largest number, beyond which it is not that scale
 ROTOR = 0.05  # of the link's inertia: a rotor that cannot be told from the only body behind it
 OWN_UNIT = "drive's own"
+DEGREES = 57.29578  # in one radian
+SAME_UNIT = 0.02  # of a factor: what is nearer to a unit has it
 MOVING = 1e-9  # spread of a column over its size, below which it is constant
 
 
@@ -37,6 +39,7 @@ def effort_column(
     robot: InverseDynamics,
     column: str = "tau",
     limits: EffortLimits | None = None,
+    most: int = MOST,
 ) -> EffortFinding:
     """What a column that was recorded as torque holds.
 
@@ -49,8 +52,9 @@ def effort_column(
         robot: the nominal model.
         column: name of the signal.
         limits: what a decision needs.
+        most: samples that are compared.
     """
-    return _Decision(effort_samples(recordings, robot, column), limits or EffortLimits()).finding()
+    return _Decision(effort_samples(recordings, robot, column, most), limits or EffortLimits()).finding()
 
 
 @dataclass
@@ -93,7 +97,14 @@ class _Decision:
         per_joint = tuple(float(scale[j][0]) if j in scale else None for j in range(self.samples.n_dof))
         probability = odds.likely[odds.best] if odds else 0.0
         return EffortFinding(
-            kind, unit, self.samples.joints, per_joint, tuple(self.evidence), dict(self.explained), probability
+            kind,
+            unit,
+            self.samples.joints,
+            per_joint,
+            tuple(self.evidence),
+            dict(self.explained),
+            probability,
+            len(self.alive),
         )
 
     def _fit(self, joint: int, name: str) -> Fit:
@@ -109,9 +120,9 @@ class _Decision:
     def _copied(self) -> EffortFinding | None:
         for kind in COPIES:
             self.explained[kind] = self._mean(kind)
-            if min(self._fit(j, kind).explained for j in self.alive) > self.limits.copy:
-                factors = [self._fit(j, kind).value[0] for j in self.alive if self._fit(j, kind).value.size]
-                unit = "degrees" if factors and abs(np.median(factors) / 57.29578 - 1) < 0.02 else ""
+            factors = [float(self._fit(j, kind).value[0]) for j in self.alive if self._fit(j, kind).value.size]
+            if min(self._fit(j, kind).explained for j in self.alive) > self.limits.copy and _one_factor(factors):
+                unit = "degrees" if abs(np.median(factors) / DEGREES - 1) < SAME_UNIT else ""
                 return self._told(kind, unit, f"the column is the {kind} times {np.median(factors or [0.0]):.4g}")
         return None
 
@@ -304,3 +315,12 @@ class _Decision:
                 if np.mean((no_load > low * known) & (no_load < high * known)) > 0.5:
                     return share, True
         return share, False
+
+
+def _one_factor(factors: Sequence[float]) -> bool:
+    """Whether all joints are copied alike; of a single joint, whether in a known unit: a spring or viscous friction is
+    proportional to position or speed as well.
+    """
+    if len(factors) > 1:
+        return float(np.ptp(factors)) < SAME_UNIT * float(np.mean(np.abs(factors)))
+    return any(abs(f / unit - 1) < SAME_UNIT for f in factors for unit in (1.0, DEGREES))

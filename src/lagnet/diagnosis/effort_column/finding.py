@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+
+from lagnet.recordings.quality.finding import LIKELY, POSSIBLE, Finding
 
 CANNOT_TELL = "cannot tell"
 KINDS = {
@@ -25,6 +26,7 @@ KINDS = {
     CANNOT_TELL: "the recordings do not tell",
 }
 
+SURE = 0.99  # probability of a unit from which a finding is likely; copies and magnitudes have none and are
 JOINT_TORQUE = ("torque", "link-side torque", "torque of either side")
 
 UNIT_IN_NEWTON_METRES = {"N mm": 0.001, "N cm": 0.01, "kgf cm": 0.0980665}
@@ -79,6 +81,7 @@ class EffortFinding:
         evidence: sentences.
         explained: hypothesis to the share of the column that it predicts in stretches left out, mean over joints.
         probability: of the unit that was decided, 0 where none was.
+        n_changing: number of joints whose column changes at all.
     """
 
     kind: str
@@ -88,6 +91,7 @@ class EffortFinding:
     evidence: tuple[str, ...]
     explained: dict[str, float]
     probability: float = 0.0
+    n_changing: int = 0
 
     @property
     def decided(self) -> bool:
@@ -99,20 +103,20 @@ class EffortFinding:
         """Whether the column can be diagnosed as joint torque as it is."""
         return self.kind in JOINT_TORQUE and self.unit == "N m"
 
-    def data_quality(self, recording: str) -> dict[str, Any] | None:
-        """An entry of a verdict's `data_quality` where the column is no joint torque in N m; None where it is."""
-        if self.is_torque:
+    def data_quality(self, recording: str) -> Finding | None:
+        """A finding for a verdict's `data_quality` where the column is no joint torque in N m.
+
+        None where it is, and where that cannot be told: no alarm without a cause.
+
+        Args:
+            recording: its path, "" for all of them.
+        """
+        if self.is_torque or not self.decided:
             return None
         mend = "; ".join(f"[{section}] {line}" for section, lines in self.mapping(()).items() for line in lines)
-        return {
-            "check": "effort_column",
-            "recording": recording,
-            "channel": "tau",
-            "interval_s": None,
-            "certainty": self.probability or None,
-            "detail": "; ".join((self.sentence(), *self.evidence)),
-            "mend": mend,
-        }
+        sure = LIKELY if self.probability > SURE or not self.probability else POSSIBLE
+        detail = "; ".join((self.sentence(), *self.evidence))
+        return Finding("effort_column", recording, "tau", None, sure, detail, f"in the mapping file: {mend}")
 
     def sentence(self) -> str:
         """The finding in one sentence."""

@@ -61,13 +61,16 @@ class EffortSamples:
         return np.tanh(self.v[:, joint] / width)
 
 
-def effort_samples(recordings: Sequence[Recording], robot: InverseDynamics, column: str = "tau") -> EffortSamples:
+def effort_samples(
+    recordings: Sequence[Recording], robot: InverseDynamics, column: str = "tau", most: int = MOST
+) -> EffortSamples:
     """Lay a column beside the model's torques.
 
     Args:
         recordings: that hold the column.
         robot: the nominal model.
         column: "tau", "current" or another signal of a recording.
+        most: samples that are compared.
 
     Raises:
         RecordingError: the recordings are too short to be smoothed.
@@ -85,7 +88,7 @@ def effort_samples(recordings: Sequence[Recording], robot: InverseDynamics, colu
     y, q, v, a, error = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     n = len(y)
     block = np.minimum(np.arange(n) * BLOCKS // max(n, 1), BLOCKS - 1)
-    few = np.unique(np.linspace(0, n - 1, min(n, MOST)).round().astype(int))
+    few = np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(int))
     y, q, v, a, error, block = (x[few] for x in (y, q, v, a, error, block))
     gravity = robot.gravity_torque(q)
     dynamic = robot.inverse_dynamics(q, v, a) - gravity
