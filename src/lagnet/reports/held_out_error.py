@@ -31,10 +31,12 @@ def error_falls(findings: Findings) -> str:
     start = _size(shown, "nmse_nominal")
     way = "falls" if _size(shown, steps[0][0]) <= start else "changes"
     median_of = "median of the joints that differ" if len(shown) > 1 else ""
-    parts = []
+    parts, said = [], ""
     for number, (key, words) in enumerate(steps):
-        beside = "; ".join(filter(None, ["" if number else median_of, _worst(fits, key)]))
+        worst = _worst(fits, key)
+        beside = "; ".join(filter(None, ["" if number else median_of, "" if worst == said else worst]))
         parts.append(f"to {percent(_size(shown, key))}{words}" + (f" ({beside})" if beside else ""))
+        said = worst
     return f"Held-out torque error {way} from {percent(start)} {' and '.join(parts)}."
 
 

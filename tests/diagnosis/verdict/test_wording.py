@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, JointFit, NamedParameter
-from lagnet.diagnosis.verdict.wording import percent, values, whole_error_words
+from lagnet.diagnosis.verdict.wording import SELDOM_MET, percent, values, whole_error_words
 
 
 @pytest.mark.parametrize(
@@ -38,5 +40,6 @@ def test_an_effect_of_the_whole_arm_names_the_worst_joint() -> None:
     assert whole_error_words(effect_at(None, 0.005), FITS).endswith("leaves most at elbow: 90 %.")
 
 
-def test_what_acts_for_a_while_is_judged_in_that_time_alone() -> None:
+def test_what_is_judged_on_other_samples_says_so_alone() -> None:
     assert whole_error_words(effect_at(None, 0.005, (1.0, 2.0)), FITS) == ""
+    assert whole_error_words(replace(effect_at("base", 0.005), explanation=f"Sentence.{SELDOM_MET}"), FITS) == ""

@@ -66,7 +66,10 @@ def whole_error_words(effect: EffectFound, fits: Sequence[JointFit]) -> str:
     The evidence on an effect leaves out samples at rest, and is a mean over the joints that an effect of the whole arm
     reaches; `nmse_named` counts all samples, at its joint or, of the whole arm, at the worst one.
     """
-    if effect.interval_s is not None or not fits:
+    apart = effect.interval_s is not None or effect.explanation.endswith(
+        SELDOM_MET
+    )  # judged on other samples, and said
+    if apart or not fits:
         return ""
     own = [fit for fit in fits if fit.joint == effect.joint] or fits
     worst = max(own, key=lambda fit: fit.nmse_named)
