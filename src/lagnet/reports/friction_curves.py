@@ -14,17 +14,18 @@ from lagnet.reports.wording import shortened
 ACROSS = 4  # plots in a row, at most
 ROW_HEIGHT = 210  # [CSS px]
 GAP_ACROSS, GAP_DOWN = 0.09, 0.2  # between plots, in parts of the whole; down: for two rows
+NOTABLE = 0.02  # of a joint's usual torque: a smaller curve is not worth a plot
 NAME_WIDTH = 30  # characters in a line above a plot
 
 
 def friction_curves(findings: Findings, entries: Sequence[Mapping[str, Any]]) -> Figure | None:
-    """Steady friction at no load beside what is named; None where no joint has any.
+    """Steady friction at no load beside what is named; None where no joint has a notable one.
 
     Args:
         findings: gives the units.
         entries: joints of the verdict's `identified`, each with its `friction_curve` of speed and torque.
     """
-    shown = [entry for entry in entries if np.any(entry["friction_curve"]["torque"])]
+    shown = [entry for entry in entries if _is_notable(findings, entry)]
     if not shown:
         return None
     down = -(-len(shown) // ACROSS)
@@ -41,6 +42,14 @@ def friction_curves(findings: Findings, entries: Sequence[Mapping[str, Any]]) ->
         traces.append(_curve(entry, suffix))
     height = 80 + ROW_HEIGHT * down
     return Figure("identified-friction", traces, "Identified friction of each joint over its speed", layout, height)
+
+
+def _is_notable(findings: Findings, entry: Mapping[str, Any]) -> bool:
+    """Whether the curve is a notable part of the joint's torque, as far as that is known."""
+    size = float(np.max(np.abs(entry["friction_curve"]["torque"])))
+    series = findings.evidence_on(entry["joint"]).held_out
+    usual = 0.0 if series is None or len(series.measured) == 0 else float(np.nanstd(np.asarray(series.measured)))
+    return size > NOTABLE * usual
 
 
 def _place(number: int, across: int, down: int) -> tuple[float, float, float, float]:

@@ -69,6 +69,7 @@ def test_weaker_combinations_are_folded_and_none_is_lost(all_layers) -> None:
 def test_one_curve_a_joint_on_axes_of_its_own_within_the_figure(all_layers) -> None:
     (figure,) = identified.build(findings_of(all_layers)).figures
     joints = [entry["joint"] for entry in all_layers.verdict["identified"]["joints"]]
+    assert len(joints) == 4
     assert [trace["name"] for trace in figure.traces] == joints
     assert len({trace["xaxis"] for trace in figure.traces}) == len(joints)
     boxes = []
@@ -81,6 +82,15 @@ def test_one_curve_a_joint_on_axes_of_its_own_within_the_figure(all_layers) -> N
     for n, a in enumerate(boxes):
         for b in boxes[:n]:
             assert a[1] < b[0] or b[1] < a[0] or a[3] < b[2] or b[3] < a[2]
+
+
+def test_a_curve_that_is_nothing_beside_the_joints_torque_is_not_drawn(all_layers) -> None:
+    found = copy.deepcopy(all_layers.verdict["identified"])
+    tiny = found["joints"][1]
+    tiny["friction_curve"]["torque"] = [1e-3 * t for t in tiny["friction_curve"]["torque"]]
+    (figure,) = identified.build(findings_of(all_layers, identified=found)).figures
+    assert tiny["joint"] not in [trace["name"] for trace in figure.traces]
+    assert len(figure.traces) == len(found["joints"]) - 1
 
 
 @pytest.mark.parametrize(
