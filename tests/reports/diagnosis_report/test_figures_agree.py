@@ -72,6 +72,7 @@ def assert_figures_agree(result, folder: Path) -> None:
         assert f"worst: {max(fits, key=lambda fit: fit['nmse_named'])['joint']}," in sentence
 
 
+@pytest.mark.slow
 def test_a_small_arm(tmp_path) -> None:
     arm = random_arm(2, seed=12, kinds=("revolute",), fixed=False)
     plant = Plant(arm, [lambda q, v, a, load: np.array([1.2, 0.5]) * v, lambda q, v, a, load: 0.2 * np.sin(3.0 * q)])
