@@ -33,6 +33,9 @@ FITS = (JointFit("base", 0.5, 0.08, None, 1e-6), JointFit("elbow", 0.6, 0.9, Non
 
 def test_the_error_over_all_samples_is_told_where_rest_changes_it() -> None:
     assert whole_error_words(effect_at("base", 0.0801), FITS) == ""
+    assert whole_error_words(effect_at("base", 0.06), FITS) == whole_error_words(effect_at("base", 0.11), FITS) == ""
+    assert whole_error_words(effect_at("base", 0.05), FITS) != ""
+    assert whole_error_words(effect_at("base", 0.13), FITS) != ""
     assert whole_error_words(effect_at("base", 0.005), FITS).endswith("rest included, named physics leaves 8 % there.")
 
 

@@ -11,6 +11,7 @@ from lagnet.effects.effect import Effect
 from lagnet.recordings.conditioning.condition import Conditioned
 
 MOST_PARAMETERS = 4  # that a sentence lists
+ALIKE = 1.5  # times one error that another is at most, to be told as the same
 LEAST_PERCENT = 0.01  # that is written as a number
 SELDOM_MET = (
     " The held-out recordings hardly meet it:"
@@ -76,7 +77,8 @@ def whole_error_words(effect: EffectFound, fits: Sequence[JointFit]) -> str:
     left = percent(worst.nmse_named)
     if len(own) > 1:
         return f" Over all held-out samples, named physics leaves most at {worst.joint}: {left}."
-    if left == percent(effect.evidence.holdout_nmse_with):
+    told = effect.evidence.holdout_nmse_with
+    if left == percent(told) or told < ALIKE * worst.nmse_named < ALIKE**2 * told:
         return ""
     return f" Over all held-out samples, rest included, named physics leaves {left} there."
 
