@@ -37,12 +37,14 @@ def written(result, folder: Path) -> tuple[dict, dict[str, np.ndarray], str]:
     return verdict, {name: np.array(values) for name, values in table.items()}, lead.replace("&lt;", "<")
 
 
-def nmse_of(table: dict[str, np.ndarray], conditioning: dict, joint: int, layer: str) -> float:
-    """nMSE of one unbroken held-out recording, low-passed at the verdict's bandwidth, without the filter's ends."""
-    rate, bandwidth = conditioning["rate_hz"], conditioning["bandwidth_hz"]
-    measured = table[f"tau_measured_{joint}"]
-    both = np.column_stack([measured, measured - table[f"tau_{layer}_{joint}"]])
-    smooth = low_pass(resample(table["time"], both, even_clock(table["time"], rate)), rate, bandwidth)
+def nmse_of(table: dict[str, np.ndarray], verdict: dict, joint: int, layer: str) -> float:
+    """nMSE of one unbroken held-out recording as the verdict takes it: low-passed, without the ends of the filter."""
+    (rate,) = (r["rate_hz"] for r in verdict["recordings"] if r["role"] == "holdout")
+    bandwidth = verdict["conditioning"]["bandwidth_hz"]
+    used = ~table.get("set_aside", np.zeros(len(table["time"]), dtype=bool))
+    time, measured, modelled = (table[n][used] for n in ("time", f"tau_measured_{joint}", f"tau_{layer}_{joint}"))
+    both = np.column_stack([measured, measured - modelled])
+    smooth = low_pass(resample(time, both, even_clock(time, rate)), rate, bandwidth)
     settle = int(np.ceil(SETTLING * rate / bandwidth))
     measured, error = smooth[settle:-settle].T
     return float(np.mean(error**2) / np.var(measured))
@@ -52,9 +54,7 @@ def assert_figures_agree(result, folder: Path) -> None:
     verdict, table, lead = written(result, folder)
     for joint, fit in enumerate(verdict["fit"]):
         for layer, column in LAYERS.items():
-            assert fit[f"nmse_{layer}"] == pytest.approx(
-                nmse_of(table, verdict["conditioning"], joint, column), rel=SAME
-            )
+            assert fit[f"nmse_{layer}"] == pytest.approx(nmse_of(table, verdict, joint, column), rel=SAME)
     fits = verdict["fit"]
     for effect in verdict["effects"]:
         evidence = effect["evidence"]
