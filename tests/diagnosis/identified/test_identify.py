@@ -110,3 +110,16 @@ def test_a_model_without_bodies_gets_terms_alone() -> None:
     assert found.layer.bodies is None
     after = unseen_errors(problem, along(corrected(problem, found)))
     assert np.all(after < MUCH_LESS * unseen_errors(problem, lambda p: p.load))
+
+
+@pytest.mark.parametrize("held", [(0, 1), (1, 2), (2,)])
+def test_joints_that_rest_are_not_made_worse(held: tuple[int, ...]) -> None:
+    """Nothing is fitted where dry friction may take any value, and changed bodies load these joints all the same."""
+    arm = random_arm(3, seed=8, kinds=("revolute",))
+    plant = Plant(arm, [lambda q, v, a, load: usual_load(arm) * np.tanh(v / 0.02) * np.array([0.0, 1.0, 0.0])])
+    fit = condition([plant.record(1, hold=held)])
+    problem = pose_problem(arm, fit, condition([plant.record(2, hold=held)], fit.bandwidth))
+    found = identify(problem, ())
+    before = unseen_errors(problem, lambda p: p.load)
+    after = before if found is None else unseen_errors(problem, along(corrected(problem, found)))
+    assert np.all(after < 1.1 * before + 0.005**2 * problem.scale**2)

@@ -20,6 +20,8 @@ from lagnet.models.corrected.model import CorrectedModel, NamedEffect, load_befo
 from lagnet.models.corrected.motion_terms import INERTIA, Rest
 
 NOTHING = 1e-7  # of a joint's torque: a term of that size was left out
+HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
+NEGLIGIBLE = 0.01  # of the standard deviation of a joint's torque
 POSES = 50  # at which the mass matrix is looked at
 INDEFINITE = 1e-9  # least eigenvalue of a mass matrix, in parts of the largest torque: rounding
 MOST_SAMPLES = 120_000  # at full rate: of longer recordings, pieces spread over them
@@ -49,18 +51,33 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
         problem: the diagnosis' problem.
         effects: named physics that stays as it is.
     """
-    pieces = spread_evenly(problem.fit, MOST_SAMPLES)
     groups, rest = term_groups(problem), usual_rest(problem)
-    seen = [_seen(problem, p, effects) for p in pieces]
+    seen = [_seen(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
     first = make_design(problem, seen, [g for g in groups if not g.needs_load and g.pair is None])
     ridge = fit_ridge(first, sums_of(first), temper=10.0, steps=15)
     seen = [_under(s, _layer(first, ridge.x, rest)) for s in seen]
-    design = make_design(problem, seen, groups)
-    choice = choose(design)
-    if choice is None:
-        return None
-    layer, design, choice = _possible(problem, effects, design, choice, rest)
-    return Identified(replace(layer, rest=friction_at_rest(problem, seen, layer)), design, choice)
+    for pieces in (seen, [replace(s, regressor=None) for s in seen]):  # without bodies where these harm some joint
+        design = make_design(problem, pieces, groups)
+        choice = choose(design)
+        if choice is not None:
+            layer, found, choice = _possible(problem, effects, design, choice, rest)
+            layer = replace(layer, rest=friction_at_rest(problem, pieces, layer))
+            if not _harms(problem, pieces, layer):
+                return Identified(layer, found, choice)
+    return None
+
+
+def _harms(problem: Problem, seen: Sequence[Seen], layer: IdentifiedLayer) -> bool:
+    """Whether some joint's fitted torque, samples at rest included, is predicted clearly worse with the layer."""
+    before, after = np.zeros((2, problem.n_dof))
+    for s in seen:
+        motion = s.piece.motion(problem)
+        bodies = 0.0 if s.regressor is None or layer.bodies is None else s.regressor @ layer.bodies.ravel()
+        added = layer.term_torque(motion, s.load) + bodies
+        before += np.sum(problem.reduce(s.piece, s.target) ** 2, axis=0)
+        after += np.sum(problem.reduce(s.piece, s.target - added) ** 2, axis=0)
+    count = sum(s.piece.keep.size for s in seen)
+    return bool(np.any(after > HARMFUL * before + NEGLIGIBLE**2 * count * problem.scale**2))
 
 
 def _possible(
