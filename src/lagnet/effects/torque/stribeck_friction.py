@@ -42,7 +42,7 @@ class StribeckFriction(Effect):
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
         direction = motion.direction(joint)
-        return np.column_stack([direction, np.exp(-((motion.v[:, joint] / shape["vs"]) ** 2)) * direction])
+        return np.column_stack([direction, _boundary_share(motion.v[:, joint], shape["vs"]) * direction])
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(2), np.full(2, np.inf)
@@ -58,3 +58,11 @@ class StribeckFriction(Effect):
             None if self.shapes(motion, joint) else "the speeds do not reach far enough above those that noise blurs"
         )
         return needs_slow_passes(motion, joint) or blurred
+
+
+def _boundary_share(v: np.ndarray, vs: float) -> np.ndarray:
+    """exp(−(v/vs)²), shape (n,), of speeds v (n,) [rad/s]; its limit at vs = 0: 1 at standstill, 0 at any speed."""
+    if vs == 0.0:
+        return (v == 0.0).astype(float)
+    with np.errstate(over="ignore"):  # a vs next to zero: exp(−∞) = 0
+        return np.exp(-((v / vs) ** 2))
