@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from lagnet.errors import LagnetError as LagnetError
     from lagnet.experiment_design.suggest_motion import suggest_motion as suggest_motion
     from lagnet.models.corrected.model import CorrectedModel as CorrectedModel
-    from lagnet.models.corrected.model import NamedEffect as NamedEffect
+    from lagnet.models.corrected.named_effects import NamedEffect as NamedEffect
     from lagnet.models.files.loading import load_any as load_model
     from lagnet.models.files.loading import load_any as load_robot
     from lagnet.plausibility.suite import check as check
@@ -54,7 +54,7 @@ _PUBLIC = {
     "CorrectedModel": "lagnet.models.corrected.model:CorrectedModel",
     "Diagnosis": "lagnet.diagnosis.diagnose:Diagnosis",
     "LagnetError": "lagnet.errors:LagnetError",
-    "NamedEffect": "lagnet.models.corrected.model:NamedEffect",
+    "NamedEffect": "lagnet.models.corrected.named_effects:NamedEffect",
     "Recording": "lagnet.recordings.recording:Recording",
     "Robot": "lagnet.rigid_body.robot:Robot",
     "check": "lagnet.plausibility.suite:check",

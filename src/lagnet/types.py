@@ -1,4 +1,4 @@
-"""Array aliases with named dimensions, and the calls that every dynamics model answers.
+"""Array aliases with named dimensions, and the calls that models of a robot answer: torques, regressors, bodies.
 
 Dimensions: `n` samples (batch first), `dof` joints. Units are SI: rad, rad/s, rad/s², N m for revolute joints,
 m, m/s, m/s², N for prismatic ones.
@@ -6,7 +6,7 @@ m, m/s, m/s², N for prismatic ones.
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -46,3 +46,67 @@ class InverseDynamics(Protocol):
     def gravity_torque(self, q: Trajectory) -> Trajectory:
         """Torque that holds the arm still against gravity, shape (n, dof)."""
         ...
+
+
+@runtime_checkable
+class RigidBodyModel(InverseDynamics, Protocol):
+    """A model whose torque is linear in the inertial parameters of its links, τ = Y(q, v, a) π, under any gravity.
+
+    Robots have these calls, and serial chains learned from torque.
+    """
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """Acceleration of gravity in the frame of the base, shape (3,) [m/s²]."""
+        ...
+
+    def joint_torque_regressor(self, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
+        """Y(q, v, a), torque per unit of each inertial parameter, ten columns a link, shape (n, dof, 10 dof)."""
+        ...
+
+    def link_regressor(self, joint: int, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
+        """The columns of Y for the link behind one joint, shape (n, dof, 10)."""
+        ...
+
+    def gravity_regressor(self, q: Trajectory) -> np.ndarray:
+        """∂τ/∂g, holding torque per unit of each component of gravity, shape (n, dof, 3) [N m s²/m]."""
+        ...
+
+    def with_gravity(self, gravity: np.ndarray) -> RigidBodyModel:
+        """The same arm under another gravity, shape (3,) [m/s²] in the frame of the base."""
+        ...
+
+
+@runtime_checkable
+class RobotModel(RigidBodyModel, Protocol):
+    """Rigid bodies from a robot description: with parameters that can be changed, and frames at the joints."""
+
+    def inertial_parameters(self) -> np.ndarray:
+        """π: m [kg], m c [kg m], I about the joint's origin [kg m²] of each link, shape (dof, 10)."""
+        ...
+
+    def with_inertial_parameters(self, parameters: np.ndarray) -> RobotModel:
+        """The same arm with other inertial parameters, shape (dof, 10)."""
+        ...
+
+    def with_gravity(self, gravity: np.ndarray) -> RobotModel:
+        """The same arm under another gravity, shape (3,) [m/s²] in the frame of the base."""
+        ...
+
+    def orientation(self, q: Trajectory, joint: int = -1) -> np.ndarray:
+        """Axes of a joint's frame as columns in the axes of the base, shape (n, 3, 3)."""
+        ...
+
+    def wrench_regressor(self, q: Trajectory, joint: int = -1) -> np.ndarray:
+        """−Jᵀ, torque per unit of a wrench (force, moment) on the arm, shape (n, dof, 6)."""
+        ...
+
+
+def has_regressor(model: object) -> TypeGuard[RigidBodyModel]:
+    """Whether a model answers the calls of `RigidBodyModel`; a corrected model does if its nominal model does."""
+    return hasattr(model, "joint_torque_regressor")
+
+
+def is_robot_model(model: object) -> TypeGuard[RobotModel]:
+    """Whether a model answers the calls of `RobotModel`; a corrected model does if its nominal model does."""
+    return hasattr(model, "with_inertial_parameters")

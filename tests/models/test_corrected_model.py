@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from lagnet.errors import EffectError
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect, apply_to_bodies
+from lagnet.models.corrected.changed_bodies import apply_to_bodies
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import load_description
 from lagnet.types import InverseDynamics

@@ -22,7 +22,7 @@ from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.separation import separate
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected.model import torque_with
+from lagnet.models.corrected.named_effects import torque_with
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
 CLEARLY = 2.0  # times the noise that it must exceed

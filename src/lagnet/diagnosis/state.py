@@ -20,7 +20,8 @@ from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.diagnosis.unexplained.friction_drift import Drift, find_drifts
 from lagnet.diagnosis.unexplained.remainder import JointRemainder, Remainder, joint_remainders, remainder_of
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import Conditioned
 
 

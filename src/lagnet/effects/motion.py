@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from lagnet.effects.rest import blurred_sign, held_direction
-from lagnet.types import InverseDynamics, JointVector, Samples, Trajectory
+from lagnet.types import InverseDynamics, JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +42,16 @@ class Motion:
     cache: dict = field(default_factory=dict, repr=False)
 
     @property
+    def bodies(self) -> RigidBodyModel:
+        """The nominal model, for effects that need its regressor; they are asked for none where it has none."""
+        return cast(RigidBodyModel, self.model)
+
+    @property
+    def robot(self) -> RobotModel:
+        """The nominal model, for effects that need its frames; they are asked for none where it has none."""
+        return cast(RobotModel, self.model)
+
+    @property
     def n_dof(self) -> int:
         """Number of joints."""
         return self.q.shape[1]
@@ -62,7 +72,7 @@ class Motion:
         """Torque per unit of each inertial parameter of the body behind one joint, shape (n, dof, 10)."""
         whole = getattr(self.model, "joint_torque_regressor", None)
         if whole is None:
-            return self.remembered(f"link_{joint}", lambda: self.model.link_regressor(joint, self.q, self.v, self.a))
+            return self.remembered(f"link_{joint}", lambda: self.bodies.link_regressor(joint, self.q, self.v, self.a))
 
         def links() -> list[np.ndarray]:  # one link costs as much as all
             columns = whole(self.q, self.v, self.a)

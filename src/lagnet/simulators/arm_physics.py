@@ -15,7 +15,9 @@ import numpy as np
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import ModelError
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect, apply_to_bodies
+from lagnet.models.corrected.changed_bodies import apply_to_bodies
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulators.drive import Drive
 from lagnet.types import JointVector

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import ClassVar, Literal
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.simulators.arm_physics import ArmPhysics
 
 Status = Literal["exact", "approximate", "not_representable"]

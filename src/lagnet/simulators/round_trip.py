@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulators.arm_physics import ArmPhysics
 from lagnet.simulators.driven_arm import DrivenArm

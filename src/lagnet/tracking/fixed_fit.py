@@ -19,7 +19,8 @@ from lagnet.diagnosis.estimation.gauss_newton import GaussNewton, Slots, spread
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.link_inertia import LinkInertia
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect, load_before, torque_with
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 from lagnet.tracking.tracked_set import TrackedSet

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 HELD = ("link_inertia",)  # bodies of the arm itself do not change from day to day: they stay as calibrated
 SHARE = 0.5  # of the robots of a make whose first recording must show an effect that is followed

@@ -17,7 +17,7 @@ from lagnet._version import __version__
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.writing import write_diagnosis
 from lagnet.errors import LagnetError
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.recording import Recording

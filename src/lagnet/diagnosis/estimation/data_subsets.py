@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 GROUPS = 3  # of recordings: each is left out in turn
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 
 def parameter_jacobian(effect: NamedEffect, x: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from lagnet.diagnosis.estimation.gauss_newton import spread
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 FEW = 20  # samples at rest, below which the share is not estimated
 

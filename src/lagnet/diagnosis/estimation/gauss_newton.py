@@ -14,7 +14,7 @@ from lagnet.diagnosis.regression.block_gram import BLOCK
 from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse_where_told, normal, power_of_all
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end

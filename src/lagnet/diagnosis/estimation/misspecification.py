@@ -19,7 +19,7 @@ from lagnet.diagnosis.estimation.refit import Tangent, tangent_at
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.normal_equations import inverse, normal
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import EDGES, NamedEffect
+from lagnet.models.corrected.named_effects import EDGES, NamedEffect
 from lagnet.recordings.conditioning.smoothing import low_pass
 
 Intervals = dict[str, tuple[float, float]]

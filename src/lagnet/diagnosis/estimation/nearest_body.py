@@ -7,7 +7,8 @@ from scipy.stats import chi2
 
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.changed_bodies import inertial_parameters_of
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import (
     from_pseudo_inertia,
@@ -57,8 +58,7 @@ def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
     """Parameters (10,) of the body that an effect changes: none for a payload, else the modelled link."""
     if effect.joint is None or not effect_named(effect.effect).changes_link:
         return np.zeros(10)
-    bodies = problem.nominal.inertial_parameters
-    return np.asarray(bodies() if callable(bodies) else bodies)[effect.joint]
+    return inertial_parameters_of(problem.nominal)[effect.joint]
 
 
 def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from lagnet.diagnosis.estimation.delta_method import correlations_of, parameter_
 from lagnet.diagnosis.estimation.gauss_newton import Slots, start_gauss_newton
 from lagnet.diagnosis.estimation.physical_bodies import with_physical_bodies
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.tilted_bodies import TILT, tilted_weight
 
 Change = dict[int, np.ndarray]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from lagnet.diagnosis.identifiability.rivals import Comparison
 from lagnet.diagnosis.regression.library import Library
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 UNEVEN, EVEN, SHIFT, SPRING = "asymmetric_friction", "coulomb_friction", "torque_offset", "joint_spring"
 

@@ -16,6 +16,7 @@ from lagnet.diagnosis.selection.arm_search import Selection
 from lagnet.diagnosis.selection.holdout_gain import error_of
 from lagnet.diagnosis.selection.sublibrary import narrow
 from lagnet.effects.catalogue import effect_named
+from lagnet.types import has_regressor
 
 FEW = 20  # valid samples of a joint, below which nothing is compared
 LEAST_RIDGE = 1e-12  # of a column's power: columns of one body are almost the same while little moves
@@ -40,7 +41,7 @@ def with_unexcited_rivals(
 def unexcited_hypotheses(problem: Problem, library: Library, found: Selection) -> tuple[Hypothesis, ...]:
     """Unexcited hypotheses at joints where an effect is named that they are easily confused with."""
     named = {(library.hypotheses[i].effect, library.hypotheses[i].joint) for i in found.indices}
-    has_bodies = hasattr(problem.nominal, "link_regressor")
+    has_bodies = has_regressor(problem.nominal)
     summary = problem.summary() if library.abstentions and named else None
     out: list[Hypothesis] = []
     for abstained in library.abstentions:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -15,9 +14,11 @@ from lagnet.diagnosis.identified.evidence import fit_ridge, sums_of
 from lagnet.diagnosis.identified.folds import Choice, choose
 from lagnet.diagnosis.identified.rest import friction_at_rest
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
+from lagnet.models.corrected.changed_bodies import inertial_parameters_of, named_body_change
 from lagnet.models.corrected.identified import IdentifiedLayer
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect, load_before, named_body_change, torque_with
+from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.motion_terms import INERTIA, Rest
+from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 
 NOTHING = 1e-7  # of a joint's torque: a term of that size was left out
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
@@ -119,9 +120,7 @@ def _impossible(design: Design, x: np.ndarray, direction: np.ndarray) -> int | N
 
 def _modelled(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
     """Ten parameters of each link with named changes, shape (dof, 10)."""
-    bodies: Any = problem.nominal.inertial_parameters
-    own = np.array(bodies() if callable(bodies) else bodies, dtype=float)
-    return own + named_body_change(problem.n_dof, effects)
+    return inertial_parameters_of(problem.nominal) + named_body_change(problem.n_dof, effects)
 
 
 def _seen(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]) -> Seen:

@@ -20,6 +20,7 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.effects.own_terms import beside_own_terms
 from lagnet.errors import DiagnosisError
+from lagnet.types import has_regressor
 
 MISFIT = 0.5  # of some joint's torque power: only then is a convention looked for
 LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
@@ -124,10 +125,11 @@ def _left_by_physics(problem: Problem, motion: Motion) -> float:
     A load turns the torque of a light wrist round as well as a wrong sign does.
     """
     turned = _mounted(problem)
-    if not hasattr(turned.nominal, "link_regressor"):
+    nominal = turned.nominal
+    if not has_regressor(nominal):
         return float(_misfit(turned, motion).sum())
-    model = turned.nominal.inverse_dynamics(motion.q, motion.v, motion.a)
-    body = turned.nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
+    model = nominal.inverse_dynamics(motion.q, motion.v, motion.a)
+    body = nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
     recorded = _recorded(motion)
     signals = _beside_own(motion, np.concatenate([recorded[..., None], (recorded - model)[..., None], body], axis=2))
     columns, rest = signals[..., 2:].reshape(-1, body.shape[2]), signals[..., 1].ravel()
@@ -137,13 +139,13 @@ def _left_by_physics(problem: Problem, motion: Motion) -> float:
 
 def _mounted(problem: Problem) -> Problem:
     """The problem with the arm on the wall or ceiling that torque shows, if it shows one."""
-    mounting = mounting_of(problem)
-    if not mounting:
+    mounting, nominal = mounting_of(problem), problem.nominal
+    if not mounting or not has_regressor(nominal):
         return problem
     law = CATALOGUE[mounting[0].effect]
     assert isinstance(law, GravityTilt)
-    gravity = law.gravity_of(np.asarray(problem.nominal.gravity, dtype=float), mounting[0].values)
-    return replace(problem, nominal=problem.nominal.with_gravity(gravity))
+    gravity = law.gravity_of(np.asarray(nominal.gravity, dtype=float), mounting[0].values)
+    return replace(problem, nominal=nominal.with_gravity(gravity))
 
 
 def _likeness(problem: Problem, motion: Motion) -> tuple[np.ndarray, np.ndarray]:

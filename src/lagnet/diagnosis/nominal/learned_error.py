@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 LAGRANGIANS = ("delan", "delan-blackbox")  # networks whose torque is the same forwards and backwards in time
 NETWORKS = (*LAGRANGIANS, "ffnn", "delan-ffnn")

@@ -11,7 +11,8 @@ import numpy as np
 from lagnet.diagnosis.settings import DecisionLimits
 from lagnet.effects.motion import Motion
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected.model import NamedEffect, torque_along
+from lagnet.models.corrected.model import torque_along
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import Conditioned, Stretch
 from lagnet.recordings.conditioning.smoothing import SETTLING, low_pass
 from lagnet.types import InverseDynamics

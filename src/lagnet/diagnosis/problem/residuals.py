@@ -12,7 +12,7 @@ import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from lagnet.diagnosis.selection.arm_search import Selection, refit_selection
 from lagnet.diagnosis.selection.holdout_gain import HoldoutGain, holdout_gains
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.settings import DecisionLimits
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 Part = Literal["fit", "holdout"]
 

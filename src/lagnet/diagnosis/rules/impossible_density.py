@@ -15,7 +15,7 @@ from lagnet.diagnosis.estimation.nearest_body import body_before
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.inertia import least_density
 
 

@@ -13,7 +13,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 SILENT = 1e-3  # of the least power that is claimed: the others fit as well without it
 UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of its absence: it goes before all others

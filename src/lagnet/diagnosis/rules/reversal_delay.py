@@ -15,7 +15,7 @@ from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 
 @final

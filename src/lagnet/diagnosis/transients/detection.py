@@ -12,7 +12,8 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.problem.residuals import RecordingResidual, residual_by_recording
 from lagnet.diagnosis.transients.scan_statistic import Running, run_up, windows
 from lagnet.effects.external.contact_force import ContactForce
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.types import is_robot_model
 
 SHORTEST = 0.6  # [s] that an event must last to be distinguished from a burst of disturbance
 BLOCK = 1.0  # [s] over which the usual power of the residual is measured
@@ -52,7 +53,7 @@ def detect_events(
     step = max(1, -(-sum(len(s.time) for s in (*fitted, *held)) // MOST_SAMPLES))
     all_series = [(s.thinned(step), is_held) for part, is_held in ((fitted, False), (held, True)) for s in part]
     power = np.maximum(_usual_power([s for s, _ in all_series]), np.maximum(noise, 1e-9 * problem.scale) ** 2)
-    if not hasattr(problem.nominal, "wrench_regressor"):
+    if not is_robot_model(problem.nominal):
         return Scan((), power, 1.0)
     law = ContactForce()
     sums = [run_up(law.relaxed(s.motion), s.rest * s.counts, s.counts / power) for s, _ in all_series]

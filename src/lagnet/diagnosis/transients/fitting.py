@@ -16,7 +16,7 @@ from lagnet.diagnosis.transients.detection import Scan
 from lagnet.effects.effect import Values
 from lagnet.effects.external.contact_force import FORCE, POINT, ContactForce
 from lagnet.effects.inertia.payload import INERTIA, Payload
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 AROUND = 3.0  # [s] before and after an event on which its edges are fitted
 BLOCKS = 4  # parts of an event that predict one another

@@ -16,7 +16,7 @@ from lagnet.diagnosis.transients.fitting import EventFit, fit_event
 from lagnet.diagnosis.transients.holdout_continuation import carry_on
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import EDGES, NamedEffect
+from lagnet.models.corrected.named_effects import EDGES, NamedEffect
 
 LEFT = 0.25  # of the power inside an interval: a law with a larger residual is rejected
 HELPS = 0.5  # of the error inside an interval that must remain at most, on parts that were not fitted

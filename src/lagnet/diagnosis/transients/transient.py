@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from lagnet.diagnosis.transients.fitting import EventFit
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 PARTS = 8  # of a recording, each with a level of its own
 CERTAIN = 8.0  # standard errors that the trend must lie off zero, of scatter about it: six degrees of freedom

@@ -11,7 +11,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.problem.residuals import power_of, stacked
 from lagnet.diagnosis.unexplained.formula import RemainderShape, find_shape
 from lagnet.diagnosis.unexplained.predictability import Predictability, Signals, predictability_of, signals_of
-from lagnet.models.corrected.model import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 HALVES = 6  # parts of the fitted motion that predict as many others
 

@@ -29,7 +29,8 @@ from lagnet.diagnosis.verdict.report_data import (
 )
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import CorrectedModel, torque_with
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import torque_with
 from lagnet.recordings.recording import Recording
 
 PACKAGES = ("numpy", "scipy", "pin", "scikit-learn")

@@ -14,7 +14,7 @@ from lagnet.diagnosis.unexplained.friction_drift import Drift
 from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, NamedParameter
 from lagnet.diagnosis.verdict.wording import explain_transient
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import EDGES
+from lagnet.models.corrected.named_effects import EDGES
 from lagnet.recordings.recording import Recording
 
 MOSTLY = 0.5  # of the held-out residual power in events, above which the remainder is reported to depend on time

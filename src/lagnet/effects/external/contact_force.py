@@ -58,7 +58,7 @@ class ContactForce(Effect):
     def relaxed(self, motion: Motion) -> np.ndarray:
         """The law with all products p_i F_k free, hence linear: columns of F, then of p_i F_k, shape (n, dof, 12)."""
         wrench = _wrench(motion)
-        axes = motion.remembered("last axes", lambda: motion.model.orientation(motion.q))
+        axes = motion.remembered("last axes", lambda: motion.robot.orientation(motion.q))
         moments = [-wrench[:, :, 3:] @ _cross(axes[:, :, i]) for i in range(3)]
         return np.concatenate([-wrench[:, :, :3], *moments], axis=2)
 
@@ -83,12 +83,12 @@ class ContactForce(Effect):
 def _wrench(motion: Motion) -> np.ndarray:
     """Torque per unit of a wrench on the last link, at its joint's origin, shape (n, dof, 6)."""
     last = motion.n_dof - 1
-    return motion.remembered("last wrench", lambda: motion.model.wrench_regressor(motion.q, last))
+    return motion.remembered("last wrench", lambda: motion.robot.wrench_regressor(motion.q, last))
 
 
 def _arms(motion: Motion, point: Mapping[str, float]) -> np.ndarray:
     """Vector from the last joint to the point of contact in the axes of the base, shape (n, 3) [m]."""
-    axes = motion.remembered("last axes", lambda: motion.model.orientation(motion.q))
+    axes = motion.remembered("last axes", lambda: motion.robot.orientation(motion.q))
     return axes @ np.array([point.get(n, 0.0) for n in POINT])
 
 

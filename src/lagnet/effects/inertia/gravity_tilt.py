@@ -46,7 +46,7 @@ class GravityTilt(Effect):
         return ({},) if direction is None else ({}, _turn_to(direction))
 
     def _mounting(self, motion: Motion) -> np.ndarray | None:
-        model, still = motion.model, np.zeros_like(motion.q)
+        model, still = motion.bodies, np.zeros_like(motion.q)
         axes = np.linalg.norm(model.gravity) * np.column_stack(level_frame(np.asarray(model.gravity, dtype=float)))
         last = motion.n_dof - 1
         fields = np.stack([model.with_gravity(g).link_regressor(last, motion.q, still, still) for g in axes.T])
@@ -54,7 +54,7 @@ class GravityTilt(Effect):
         return far_direction(self._gravity_regressor(motion) @ axes, fields, inertia, motion)
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
-        return self._gravity_regressor(motion) @ self.changes(np.asarray(motion.model.gravity, dtype=float), shape)
+        return self._gravity_regressor(motion) @ self.changes(np.asarray(motion.bodies.gravity, dtype=float), shape)
 
     def changes(self, gravity: np.ndarray, shape: Mapping[str, float]) -> np.ndarray:
         """Change of gravity in the frame of the base per unit of each coefficient, shape (3, k) [m/s²].
@@ -77,7 +77,7 @@ class GravityTilt(Effect):
         return np.linalg.norm(gravity) * np.column_stack(level_frame(gravity)) @ _direction(values)
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
-        gravity = np.asarray(motion.model.gravity, dtype=float)
+        gravity = np.asarray(motion.bodies.gravity, dtype=float)
         return self._gravity_regressor(motion) @ (self.gravity_of(gravity, values) - gravity)
 
     def remark(self, values: Mapping[str, float]) -> str:
@@ -89,7 +89,7 @@ class GravityTilt(Effect):
         return needs_any_motion(motion)
 
     def _gravity_regressor(self, motion: Motion) -> np.ndarray:
-        return motion.remembered("gravity", lambda: motion.model.gravity_regressor(motion.q))
+        return motion.remembered("gravity", lambda: motion.bodies.gravity_regressor(motion.q))
 
 
 def is_large(turn: Mapping[str, float]) -> bool:

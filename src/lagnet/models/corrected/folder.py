@@ -15,8 +15,10 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import LagnetError, ModelError
 from lagnet.files import finite_json, read_bounded, write_whole
+from lagnet.models.corrected.changed_bodies import are_consistent
 from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json, remainder_as_json, remainder_from_json
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect, has_real_bodies
+from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
 
 FORMAT = 2  # 2: with the identified layer
@@ -51,7 +53,8 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "remainder": remainder_as_json(model.remainder),
     }
     write_whole(out / FILE, finite_json(text))
-    if isinstance(model.nominal, Robot) and has_real_bodies(model):
+    further = None if model.identified is None else model.identified.bodies
+    if isinstance(model.nominal, Robot) and are_consistent(model.nominal, model.effects, further):
         write_description(model.bodies(), out / "robot")
     return out
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from lagnet.effects.motion import Motion
+from lagnet.errors import ModelError
 from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
-from lagnet.types import Trajectory
+from lagnet.types import RigidBodyModel, Trajectory
 
 CHUNK = 4096  # samples whose regressor is held at once
 
@@ -31,15 +31,20 @@ class IdentifiedLayer:
     weights: np.ndarray
     rest: Rest
 
-    def body_torque(self, model: Any, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+    def body_torque(self, model: RigidBodyModel | None, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque of the changed bodies alone, Y(q, v, a) Δπ, shape (n, dof) [N m].
 
         Args:
-            model: the model whose bodies are changed; it has a regressor where `bodies` are given.
+            model: gives the regressor Y; None for a nominal model without bodies.
+
+        Raises:
+            ModelError: bodies change, and there are none.
         """
         out = np.zeros(np.shape(q))
         if self.bodies is None or not self.bodies.any():
             return out
+        if model is None:
+            raise ModelError("the nominal model has no bodies that an identified layer could change")
         change = self.bodies.ravel()
         for start in range(0, len(q), CHUNK):
             rows = slice(start, start + CHUNK)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
-from lagnet.effects.inertia.gravity_tilt import is_large
+from lagnet.effects.inertia.gravity_tilt import GravityTilt, is_large
 from lagnet.effects.motion import Motion
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
+TILT_LAW = GravityTilt()
 
 
 @runtime_checkable
@@ -38,8 +39,8 @@ def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | floa
     tilts = [e for e in effects if e.effect == TILT]
     if not bodies or not tilts:
         return 0.0
-    gravity = np.asarray(motion.model.gravity, dtype=float)
-    change = sum((_law(e).gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
+    gravity = np.asarray(motion.bodies.gravity, dtype=float)
+    change = sum((TILT_LAW.gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
     return sum((_weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
 
 
@@ -51,8 +52,8 @@ def body_in_turned_field(motion: Motion, link: int, effects: Sequence[Named]) ->
     large = [e for e in effects if e.effect == TILT and is_large(e.values)]
     if not large:
         return 0.0
-    gravity = np.asarray(motion.model.gravity, dtype=float)
-    change = sum((_law(e).gravity_of(gravity, e.values) - gravity for e in large), np.zeros(3))
+    gravity = np.asarray(motion.bodies.gravity, dtype=float)
+    change = sum((TILT_LAW.gravity_of(gravity, e.values) - gravity for e in large), np.zeros(3))
     return np.einsum("gnji,g->nji", _fields_of(motion, link), change)
 
 
@@ -72,7 +73,7 @@ def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = motion.n_dof - 1 if body.joint is None else body.joint
-    weights = np.asarray(_law(body).coordinates(body.values))
+    weights = np.asarray(effect_named(body.effect).coordinates(body.values))
     field = np.tensordot(gravity, _fields_of(motion, link), 1)
     return (field.reshape(-1, weights.size) @ weights).reshape(field.shape[:-1])
 
@@ -84,8 +85,4 @@ def _fields_of(motion: Motion, link: int) -> np.ndarray:
 def _fields(motion: Motion, link: int) -> np.ndarray:
     """Holding torque per unit of each parameter of a body and of gravity along each axis, shape (3, n, dof, 10)."""
     rest = np.zeros_like(motion.q)
-    return np.stack([motion.model.with_gravity(g).link_regressor(link, motion.q, rest, rest) for g in np.eye(3)])
-
-
-def _law(effect: Named) -> Any:
-    return effect_named(effect.effect)
+    return np.stack([motion.bodies.with_gravity(g).link_regressor(link, motion.q, rest, rest) for g in np.eye(3)])

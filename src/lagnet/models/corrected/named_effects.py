@@ -1,0 +1,103 @@
+"""Σ_k r_k(q, v, a, t; p_k): named effects with their parameters, and the torque of a model with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.effect import STAGES, Stage
+from lagnet.effects.motion import Motion
+from lagnet.models.corrected.tilted_bodies import tilted_weight
+from lagnet.types import Trajectory
+
+EDGES = ("t0", "t1")  # start and end of an effect on an interval
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """r_k(q, v, a, t; p): one effect of the catalogue with its parameters, at a joint or on the whole arm.
+
+    Args:
+        effect: name in the catalogue.
+        joint: index of the joint, None for the whole arm.
+        values: parameters by name, SI units.
+        interval: (start, end) [s] outside which the effect is absent; None: always there.
+        recording: index of the fitted recording in which it was found; nowhere else does it act. None: in any.
+    """
+
+    effect: str
+    joint: int | None
+    values: Mapping[str, float]
+    interval: tuple[float, float] | None = None
+    recording: int | None = None
+
+    @property
+    def key(self) -> tuple:
+        """Effect, joint, parameters, interval and recording as a value to be looked up by."""
+        return self.effect, self.joint, tuple(self.values.items()), self.interval, self.recording
+
+    def coordinates(self) -> np.ndarray:
+        """x(p), shape (k,): the coordinates of the law, which a refit changes, then t0 and t1 where there are any."""
+        return np.append(effect_named(self.effect).coordinates(self.values), self.interval or ())
+
+    def at_coordinates(self, x: np.ndarray) -> NamedEffect:
+        """The effect with other coordinates."""
+        interval = None if self.interval is None else (float(x[-2]), float(x[-1]))
+        own = x if interval is None else x[:-2]
+        return replace(self, values=effect_named(self.effect).from_coordinates(own), interval=interval)
+
+    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of the coordinates."""
+        lower, upper = effect_named(self.effect).coordinate_bounds()
+        n_edges = len(self.interval or ())
+        return np.append(lower, np.full(n_edges, -np.inf)), np.append(upper, np.full(n_edges, np.inf))
+
+    def parameters(self) -> dict[str, float]:
+        """Values by name, with t0 and t1 [s] where the effect acts on an interval."""
+        edges = {} if self.interval is None else dict(zip(EDGES, map(float, self.interval), strict=True))
+        return {**self.values, **edges}
+
+    def added(self, motion: Motion) -> np.ndarray:
+        """r_k along a motion, shape (n, dof) [N m]."""
+        if self.recording is not None and self.recording != motion.recording:
+            return np.zeros_like(motion.load)
+        law = effect_named(self.effect)
+        torque = law.torque(motion, self.joint, self.values)
+        if torque.ndim == 1:
+            full = np.zeros_like(motion.load)
+            full[:, self.joint] = torque
+            torque = full
+        if self.interval is not None:
+            torque = torque * _inside(motion.time, self.interval)[:, None]
+        return torque
+
+
+def _inside(time: np.ndarray, interval: tuple[float, float]) -> np.ndarray:
+    """1 from t0 to t1, shape (n,), falling to 0 over one sample outside: a slope makes t0 and t1 differentiable."""
+    step = float(np.median(np.diff(time))) if time.size > 1 else 1.0
+    since_start, since_end = ((time - edge) / step for edge in interval)
+    return np.clip(since_start + 1.0, 0.0, 1.0) * np.clip(1.0 - since_end, 0.0, 1.0)
+
+
+def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
+    """τ_nominal + Σ_k r_k, the nominal torque `motion.load` with effects, stage by stage, shape (n, dof) [N m].
+
+    Effects of one stage all act on the torque of the stages before; signals act one after the other.
+    """
+    tau = motion.load
+    for stage in STAGES:
+        before = motion.with_load(tau)
+        for effect in (e for e in effects if effect_named(e.effect).stage == stage):
+            tau = tau + effect.added(motion.with_load(tau) if stage == "signal" else before)
+        if stage == "body":
+            tau = tau + tilted_weight(motion, effects)
+    return tau
+
+
+def load_before(motion: Motion, effects: Sequence[NamedEffect], stage: Stage) -> Trajectory:
+    """Torque that effects of a stage act on: τ_nominal with effects of earlier stages, shape (n, dof) [N m]."""
+    earlier = STAGES[: STAGES.index(stage)]
+    return torque_with(motion, [e for e in effects if effect_named(e.effect).stage in earlier])
