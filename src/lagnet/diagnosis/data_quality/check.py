@@ -1,4 +1,4 @@
-"""What a check against a torque model is: another reading of the recordings under which they fit the model."""
+"""A reading check: another interpretation of the recorded columns, tested by its misfit to the torque model."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from lagnet.diagnosis.data_quality.misfit import misfits, whole
+from lagnet.diagnosis.data_quality.misfit import geometric_mean, misfits
 from lagnet.diagnosis.data_quality.samples import Samples, thinned
 from lagnet.types import InverseDynamics
 
-FEW = 160  # samples at which readings are compared
-MANY = 1200  # at which the best are
-FITS = 0.2  # misfit of a reading that counts as fitting
-BETTER = 0.35  # of the misfit as recorded, and of what a mounting and a load leave, that a reading may leave
+FEW = 160  # samples on which all readings are compared
+MANY = 1200  # samples on which the best of them are
+FITS = 0.2  # largest misfit of a reading that fits
+BETTER = 0.35  # largest misfit of a reading over that as recorded, and over that with another mounting and body
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Recordings and a model as the checks see them.
+    """Smoothed recordings and a model, with the misfits that several checks need.
 
     Args:
         model: the nominal model.
@@ -39,7 +39,7 @@ class Evidence:
 
     @cached_property
     def many(self) -> Samples:
-        """Samples for judging one."""
+        """Samples for the best of them."""
         return thinned(self.series, MANY)
 
     @cached_property
@@ -50,24 +50,24 @@ class Evidence:
     @cached_property
     def as_recorded(self) -> float:
         """Geometric mean of the misfits as recorded."""
-        return float(whole(self.misfits))
+        return float(geometric_mean(self.misfits))
 
     def accepts(self, reading: Reading) -> bool:
-        """Whether a reading fits, and the recordings as they are do not."""
+        """Whether a reading fits, and far better than the recordings as they are."""
         return reading.misfit < min(FITS, BETTER * self.as_recorded)
 
 
 @dataclass(frozen=True)
 class Reading:
-    """Another reading of the recordings.
+    """Another interpretation of recorded columns, with its misfit.
 
     Args:
-        check: name of the check that tried it.
-        channel: columns that are read otherwise.
+        check: name of the check that proposes it.
+        channel: columns that are interpreted otherwise.
         misfit: geometric mean over the joints under this reading.
-        detail: what was seen.
-        mend: lines of the mapping file, or the step, that mend it.
-        prior: by which the misfit of a reading is raised, for readings that are less usual than others.
+        detail: sentence on what was found.
+        mend: lines of the mapping file, or the step, that correct it.
+        prior: factor on the misfit, above 1 for readings that are less common than others.
     """
 
     check: str
@@ -79,7 +79,7 @@ class Reading:
 
 
 class ReadingCheck(ABC):
-    """One way to read recordings otherwise. A variant is a new file in `checks/` and a line in `CHECKS`."""
+    """One kind of reading. A variant is a new file in `checks/` and a line in `CHECKS`."""
 
     name: ClassVar[str]
     title: ClassVar[str]
@@ -88,4 +88,4 @@ class ReadingCheck(ABC):
 
     @abstractmethod
     def readings(self, evidence: Evidence) -> Iterator[Reading]:
-        """The best readings of this kind, judged on many samples."""
+        """The best readings of this kind, their misfit on `evidence.many`."""

@@ -1,4 +1,4 @@
-"""All checks of data over all recordings of a diagnosis, before physics: mended, refused or told."""
+"""All data checks over all recordings of a diagnosis, before any physics: corrected, refused or reported."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ import numpy as np
 from lagnet.diagnosis.data_quality.check import BETTER, Evidence, Reading
 from lagnet.diagnosis.data_quality.checks import CHECKS
 from lagnet.diagnosis.data_quality.effort import effort_findings
-from lagnet.diagnosis.data_quality.physics import left_by_physics
-from lagnet.diagnosis.data_quality.samples import look_at
+from lagnet.diagnosis.data_quality.physics import misfit_with_mounting_and_body
+from lagnet.diagnosis.data_quality.samples import smoothed_stretches
 from lagnet.errors import DiagnosisError
 from lagnet.recordings.quality.finding import CERTAIN, Finding
 from lagnet.recordings.quality.screen import Screened, refuse_harmful, screen
 from lagnet.recordings.recording import Recording
 
-SUSPECT = 0.5  # misfit of some joint from which other readings are tried
-SOUND = 0.005  # misfit of the whole arm below which nothing is
+SUSPECT = 0.5  # misfit of some joint, from which other readings are tested
+SOUND = 0.005  # misfit of the arm, below which none is
 
 
 @dataclass(frozen=True, eq=False)
 class Inspected:
-    """Recordings less what is set aside, and what was found."""
+    """Recordings without excluded samples, and the findings."""
 
     recordings: tuple[Recording, ...]
     findings: tuple[Finding, ...]
 
 
 def inspect_quality(recordings: Sequence[Recording], robot: Any = None) -> tuple[Finding, ...]:
-    """What is wrong with the data of recordings, without refusing any.
+    """Faults in the data of recordings, none of which is refused.
 
     Args:
         recordings: as read.
-        robot: a torque model with `joints` and `inverse_dynamics`; None: only what needs no model is looked for.
+        robot: a torque model with `joints` and `inverse_dynamics`; None: only checks that need no model.
     """
     screened = [screen(recording, robot) for recording in recordings]
     found = [finding for one in screened for finding in one.findings]
@@ -46,10 +46,10 @@ def inspect_quality(recordings: Sequence[Recording], robot: Any = None) -> tuple
 
 
 def screened_for(recordings: Sequence[Recording], robot: Any) -> Inspected:
-    """The recordings less the samples that are set aside, and what was found.
+    """The recordings without excluded samples, and the findings.
 
     Raises:
-        RecordingError: data that a diagnosis would tell as physics; which, where, and what mends it.
+        RecordingError: data that a diagnosis would report as physics; which, where, and what corrects it.
     """
     screened: list[Screened] = [screen(recording, robot) for recording in recordings]
     found = [finding for one in screened for finding in one.findings]
@@ -82,7 +82,7 @@ def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...
 
     If there is none, what the effort column holds, if that is no joint torque.
     """
-    series = look_at(recordings)
+    series = smoothed_stretches(recordings)
     if not series:
         return ()
     with np.errstate(all="ignore"):
@@ -93,7 +93,11 @@ def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...
             if check.always or (suspect and not (check.last and any(map(evidence.accepts, tried)))):
                 tried.extend(check().readings(evidence))
         best = min(tried, key=lambda reading: reading.misfit * reading.prior, default=None)
-        if best is None or not evidence.accepts(best) or not best.misfit < BETTER * left_by_physics(evidence):
+        if (
+            best is None
+            or not evidence.accepts(best)
+            or not best.misfit < BETTER * misfit_with_mounting_and_body(evidence)
+        ):
             return effort_findings(recordings, robot, evidence) if suspect else ()
     return (_finding(best, tried),)
 

@@ -1,6 +1,7 @@
-"""A light, unit-free look at recordings: smoothed motion and torque on an even clock, before any band is chosen.
+"""q, v, a, τ low-passed on an even clock, of some stretches, before the band of a diagnosis is chosen.
 
-All filters follow the sample rate and the motion itself, so that a clock in another unit changes nothing but the unit.
+All bandwidths are shares of the sample rate and of the motion's own band, so that a clock in another unit changes the
+unit alone.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ from lagnet.recordings.conditioning.smoothing import SETTLING, derivative, even_
 from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
 
-OVER_MOTION = 6.0  # bandwidth over that of the motion
-OF_RATE = 0.2  # of the sample rate: the most that it may be
-RECORDINGS = 4  # that are looked at
+OVER_MOTION = 6.0  # bandwidth of the filter over that of the motion
+OF_RATE = 0.2  # largest bandwidth over the sample rate
+RECORDINGS = 4  # that are read
 LONGEST = 6000  # samples of each
-SHORTEST = 64
+SHORTEST = 64  # samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +38,14 @@ class Samples:
         return Samples(self.time[keep], self.q[keep], self.v[keep], self.a[keep], self.tau[keep])
 
 
-def look_at(recordings: Sequence[Recording]) -> tuple[Samples, ...]:
-    """The longest stretch of a few recordings each; none of recordings too short."""
+def smoothed_stretches(recordings: Sequence[Recording]) -> tuple[Samples, ...]:
+    """The longest stretch of each of a few recordings; recordings that are too short have none."""
     every = max(1, len(recordings) // RECORDINGS)
-    looks = (_look_at(recording) for recording in recordings[::every][:RECORDINGS])
-    return tuple(samples for samples in looks if samples is not None)
+    stretches = (_smoothed(recording) for recording in recordings[::every][:RECORDINGS])
+    return tuple(samples for samples in stretches if samples is not None)
 
 
-def _look_at(recording: Recording) -> Samples | None:
+def _smoothed(recording: Recording) -> Samples | None:
     stretches = stretches_of(recording)
     if not stretches:
         return None
@@ -66,7 +67,7 @@ def _look_at(recording: Recording) -> Samples | None:
 
 
 def thinned(samples: Sequence[Samples], most: int) -> Samples:
-    """At most so many samples from all over, as one set (not a time series)."""
+    """At most so many samples, evenly spread over all stretches, as one set and no time series."""
     total = sum(len(s.time) for s in samples)
     every = max(1, -(-total // most))
     parts = [s.rows(slice(every // 2, None, every)) for s in samples]

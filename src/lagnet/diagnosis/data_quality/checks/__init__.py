@@ -1,4 +1,4 @@
-"""The readings that are tried, in the order in which they are told. One a file."""
+"""The readings that are tested, in order. One a file."""
 
 from lagnet.diagnosis.data_quality.check import ReadingCheck
 from lagnet.diagnosis.data_quality.checks.another_robot import AnotherRobot

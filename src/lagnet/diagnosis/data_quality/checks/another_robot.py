@@ -1,4 +1,4 @@
-"""The log of another robot than the one that was named."""
+"""Log of another robot: a named robot of as many joints whose misfit is far smaller."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lagnet.errors import RobotError
 from lagnet.rigid_body.named_robots import named_robots
 from lagnet.rigid_body.robot import Robot, load_description
 
-RARE = 1.5  # by which the misfit of another robot counts more: a wrong column is more usual
+RARE = 1.5  # prior of another robot: a wrong column is more common
 
 
 class AnotherRobot(ReadingCheck):
@@ -38,7 +38,7 @@ class AnotherRobot(ReadingCheck):
 
 
 def same_size(n_dof: int) -> Iterator[tuple[str, Robot]]:
-    """The named robots of as many joints."""
+    """The named robots with this number of joints."""
     for name in named_robots():
         try:
             robot = load_description(name)

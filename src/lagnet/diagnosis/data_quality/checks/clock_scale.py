@@ -1,4 +1,4 @@
-"""A clock in another unit, told by how strongly torque follows acceleration."""
+"""Clock in another unit, t → s t: v → v / s and a → a / s², tested by the inertial torque."""
 
 from __future__ import annotations
 

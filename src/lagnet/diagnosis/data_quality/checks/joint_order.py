@@ -1,4 +1,4 @@
-"""Columns in another order than the model's joints, as messages that sort joints by name have them."""
+"""Permutation of columns: joints in another order than the model's, such as messages that sort joints by name."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from itertools import combinations, permutations
 import numpy as np
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import misfit_of, of_joints, own_terms, whole
+from lagnet.diagnosis.data_quality.misfit import geometric_mean, joint_misfits, misfit_of, nuisance_terms
 from lagnet.diagnosis.data_quality.samples import Samples, thinned
 
-MOST_JOINTS = 6  # up to which all orders are tried: 720; beyond, those that logs have
-BEST = 3  # that are judged on many samples
-FEWEST = 48  # samples on which all orders are tried
-SORTED = 0.7  # by which the misfit of the alphabetical order counts less: it is by far the most usual
+MOST_JOINTS = 6  # up to which all orders are tested: 720; beyond, the common ones
+BEST = 3  # that are compared on many samples
+FEWEST = 48  # samples on which all orders are tested
+SORTED = 0.7  # prior of the alphabetical order, by far the most common
 
 Order = tuple[int, ...]
 
 
 class JointOrder(ReadingCheck):
-    """Positions, speeds and torques that fit the model when columns change places.
+    """Positions, speeds and torques that fit the model after a permutation of columns.
 
-    All orders of up to six joints are tried; of more the alphabetical one, the reversed one, and exchanges one by one.
+    All orders of up to six joints are tested; of more the alphabetical one, the reversed one, and exchanges one by one.
     """
 
     name = "joint_order"
@@ -39,11 +39,11 @@ class JointOrder(ReadingCheck):
             if len(joints) > MOST_JOINTS:
                 best = tuple(dict.fromkeys(self._exchanged(evidence, order, kinds) for order in best))
             for order in best:
-                left = misfit_of(evidence.model, reordered(evidence.many, order, kinds))
-                yield reading_of(self.name, joints, order, kinds, left)
+                misfit = misfit_of(evidence.model, reordered(evidence.many, order, kinds))
+                yield reading_of(self.name, joints, order, kinds, misfit)
 
     def _exchanged(self, evidence: Evidence, order: Order, kinds: tuple[str, ...]) -> Order:
-        """The order after exchanges of two columns, each time the one that fits best, until none fits better."""
+        """The order after exchanges of two columns, each time that of least misfit, until none is better."""
         for _ in range(len(order)):
             swaps = tuple(swapped(order, i, j) for i, j in combinations(range(len(order)), 2))
             best = _best(evidence, (order, *swaps), kinds)[0]
@@ -53,36 +53,36 @@ class JointOrder(ReadingCheck):
         return order
 
 
-def reading_of(name: str, joints: tuple[str, ...], order: Order, kinds: tuple[str, ...], left: float) -> Reading:
+def reading_of(name: str, joints: tuple[str, ...], order: Order, kinds: tuple[str, ...], misfit: float) -> Reading:
     """A reading of the columns in another order, with the lines that map them."""
     moved = [i for i, k in enumerate(order) if i != k]
-    usual = order == alphabetical(joints)
-    what = "alphabetical order" if usual else "another order"
+    is_sorted = order == alphabetical(joints)
+    what = "alphabetical order" if is_sorted else "another order"
     columns = "positions and torques" if len(kinds) > 1 else "positions"
-    told = ", ".join(f"q_{order[i]} is {joints[i]}" for i in moved)
+    listed = ", ".join(f"q_{order[i]} is {joints[i]}" for i in moved)
     mend = "; ".join(f'[columns] "{kind}_{i}" = "{kind}_{order[i]}"' for kind in ("q", "v", *kinds[1:]) for i in moved)
     return Reading(
         name,
         " ".join(kinds),
-        left,
-        f"the columns of {columns} are in {what}, not in that of the model's joints: {told}",
+        misfit,
+        f"the columns of {columns} are in {what}, not in that of the model's joints: {listed}",
         f"map them with --columns: {mend}",
-        SORTED if usual else 1.0,
+        SORTED if is_sorted else 1.0,
     )
 
 
 def _best(evidence: Evidence, tried: tuple[Order, ...], kinds: tuple[str, ...]) -> tuple[Order, ...]:
-    """The few orders that fit best, judged at once: motion of all orders goes through the model in one call."""
+    """The few orders of least misfit; the motion of all orders goes through the model in one call."""
     samples = thinned(evidence.series, FEWEST)
     n, dof = samples.q.shape
     picks = np.array(tried)
     motion = (np.moveaxis(x[:, picks], 1, 0).reshape(-1, dof) for x in (samples.q, samples.v, samples.a))
     modelled = np.moveaxis(np.asarray(evidence.model.inverse_dynamics(*motion)).reshape(len(tried), n, dof), 1, 2)
-    own = own_terms(samples.v.T, samples.a.T)[picks]
+    nuisance = nuisance_terms(samples.v.T, samples.a.T)[picks]
     recorded = samples.tau.T[picks] if "tau" in kinds else np.broadcast_to(samples.tau.T, modelled.shape)
-    left = of_joints(recorded, modelled, own)
-    usual = np.array([SORTED if order == alphabetical(evidence.model.joints) else 1.0 for order in tried])
-    return tuple(tried[i] for i in np.argsort(whole(left) * usual)[:BEST])
+    misfit = joint_misfits(recorded, modelled, nuisance)
+    prior = np.array([SORTED if order == alphabetical(evidence.model.joints) else 1.0 for order in tried])
+    return tuple(tried[i] for i in np.argsort(geometric_mean(misfit) * prior)[:BEST])
 
 
 def alphabetical(joints: tuple[str, ...]) -> Order:
@@ -92,7 +92,7 @@ def alphabetical(joints: tuple[str, ...]) -> Order:
 
 
 def orders(joints: tuple[str, ...]) -> Iterator[Order]:
-    """The orders that are tried, that of the model left out."""
+    """The orders that are tested, without that of the model."""
     n = len(joints)
     same = tuple(range(n))
     if n <= MOST_JOINTS:

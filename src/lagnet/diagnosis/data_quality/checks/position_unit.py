@@ -1,4 +1,4 @@
-"""Positions in another unit than radians or metres, too small to be seen by the joints' limits."""
+"""Positions in another unit, q → s q, too small for a violation of the joints' limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Torques stamped much later or earlier than the motion that they belong to."""
+"""τ(t + T) against q(t): a shift T between the stamps of torque and motion, the same for all joints."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import misfits, whole
+from lagnet.diagnosis.data_quality.misfit import geometric_mean, misfits
 from lagnet.diagnosis.data_quality.samples import Samples, thinned
 
 LONGEST = 1.5  # [s]
-LEAST = 0.15  # [s] below which a shift may be a delay of the drives, which physics has a name for
+LEAST = 0.15  # [s]: a smaller shift may be a delay of the drives, an effect of the catalogue
 TRIED = 31  # shifts to either side
-AGREE = 0.6  # of the joints that fit better by far with the shift
+AGREE = 0.6  # share of joints whose misfit the shift must halve
 
 
 class TorqueLag(ReadingCheck):
@@ -34,10 +34,10 @@ class TorqueLag(ReadingCheck):
             k: _shifted(evidence.series, model, k)
             for k in np.unique(np.linspace(-most, most, 2 * TRIED + 1).astype(int))
         }
-        best = min(scores, key=lambda k: whole(scores[k]))
+        best = min(scores, key=lambda k: geometric_mean(scores[k]))
         fine = range(best - most // TRIED, best + most // TRIED + 1)
         scores |= {k: _shifted(evidence.series, model, k) for k in fine if abs(k) <= most and k not in scores}
-        best = min(scores, key=lambda k: whole(scores[k]))
+        best = min(scores, key=lambda k: geometric_mean(scores[k]))
         lag = best / rate
         agree = np.mean(scores[best] < 0.5 * scores[min(scores, key=abs)])
         if abs(lag) < LEAST or agree < AGREE:
@@ -46,7 +46,11 @@ class TorqueLag(ReadingCheck):
         yield Reading(
             self.name,
             "tau",
-            float(whole(scores[best]) * evidence.as_recorded / max(whole(scores[min(scores, key=abs)]), 1e-12)),
+            float(
+                geometric_mean(scores[best])
+                * evidence.as_recorded
+                / max(geometric_mean(scores[min(scores, key=abs)]), 1e-12)
+            ),
             f"the torques of {'all' if agree == 1 else 'most'} joints are stamped about {abs(lag):.3g} s {way} than the"
             " motion that they belong to",
             f"shift the torque columns by {abs(best)} rows, so that torque and motion stand side by side",
