@@ -68,7 +68,7 @@ _PUBLIC = {
     "train_ensemble": "lagnet.training.ensemble:train_ensemble",
     "write_diagnosis": "lagnet.diagnosis.writing:write_diagnosis",
 }
-__all__ = ["__version__", *_PUBLIC]
+__all__ = ["__version__", *_PUBLIC]  # pyright: ignore[reportUnsupportedDunderAll]
 
 
 def __getattr__(name: str) -> Any:

@@ -79,7 +79,7 @@ class RigidBodyModel(InverseDynamics, Protocol):
 
 @runtime_checkable
 class RobotModel(RigidBodyModel, Protocol):
-    """Rigid bodies from a robot description: with parameters that can be changed, and frames at the joints."""
+    """Rigid bodies from a robot description: their parameters can be changed, and their joints have frames."""
 
     def inertial_parameters(self) -> np.ndarray:
         """π: m [kg], m c [kg m], I about the joint's origin [kg m²] of each link, shape (dof, 10)."""

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from lagnet.effects.rest import blurred_sign, held_direction
-from lagnet.types import InverseDynamics, JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
+from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +20,7 @@ class Motion:
         q, v, a: shape (n, dof), smoothed joint motion [rad, rad/s, rad/s²].
         load: shape (n, dof), torque that the model with all effects so far gives [N m].
         slow: shape (dof,), speed below which the sign of the velocity is blurred [rad/s]; the ε of s(v).
-        model: the nominal model, for effects that change bodies or gravity.
+        model: the nominal model, an `InverseDynamics`; effects that change bodies ask `bodies` or `robot` for it.
         recorded: shape (n, dof), recorded torque, low-passed [N m]; None where there is no recording.
         held: shape (dof,), share of the dry friction that stays while a joint rests; None: none, or no order.
         recording: which of the recordings under diagnosis it is a part of; None: none of them.
@@ -34,7 +34,7 @@ class Motion:
     a: Trajectory
     load: Trajectory
     slow: JointVector
-    model: InverseDynamics | Any
+    model: Any
     recorded: Trajectory | None = None
     held: JointVector | None = None
     recording: int | None = None

@@ -65,7 +65,7 @@ def motion_limits(problem: Problem) -> MotionLimits:
     unit = _unit(problem)
     still = acceleration < OF_OTHERS * np.median(acceleration / unit) * unit
     acceleration = np.where(still, OF_OTHERS * np.median(acceleration / unit) * unit, acceleration)
-    model = problem.nominal
+    model: Any = problem.nominal
     if not hasattr(model, "position_lower"):
         return MotionLimits(lowest, highest, speed, acceleration, torque, False)
     acceleration = np.maximum(acceleration, MODEST * unit)

@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
+
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
 
 TIP_WRENCH = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
-def inverse_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+def inverse_dynamics(model: Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
     """Recursive Newton–Euler, shape (n, dof); the loop over samples is Pinocchio's own, on one thread."""
     if not len(q):
         return np.empty(q.shape)
@@ -21,7 +22,7 @@ def inverse_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, a: np.ndarr
     return np.ascontiguousarray(torque.reshape(model.nv, len(q)).T)  # one joint or one sample comes back flat
 
 
-def gravity_torque(model: pin.Model, q: np.ndarray) -> np.ndarray:
+def gravity_torque(model: Model, q: np.ndarray) -> np.ndarray:
     """Torque that holds the arm still, shape (n, dof)."""
     data, gravity, out = model.createData(), pin.computeGeneralizedGravity, np.empty(q.shape)
     for i in range(len(q)):
@@ -29,7 +30,7 @@ def gravity_torque(model: pin.Model, q: np.ndarray) -> np.ndarray:
     return out
 
 
-def coriolis_torque(weightless: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+def coriolis_torque(weightless: Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Newton–Euler without gravity and acceleration, shape (n, dof); the model must have its gravity set to zero."""
     data, bias, out = weightless.createData(), pin.nonLinearEffects, np.empty(q.shape)
     for i in range(len(q)):
@@ -37,7 +38,7 @@ def coriolis_torque(weightless: pin.Model, q: np.ndarray, v: np.ndarray) -> np.n
     return out
 
 
-def forward_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, tau: np.ndarray) -> np.ndarray:
+def forward_dynamics(model: Model, q: np.ndarray, v: np.ndarray, tau: np.ndarray) -> np.ndarray:
     """Articulated-body algorithm, shape (n, dof)."""
     data, aba, out = model.createData(), pin.aba, np.empty(q.shape)
     for i in range(len(q)):
@@ -45,7 +46,7 @@ def forward_dynamics(model: pin.Model, q: np.ndarray, v: np.ndarray, tau: np.nda
     return out
 
 
-def mass_matrix(model: pin.Model, q: np.ndarray) -> np.ndarray:
+def mass_matrix(model: Model, q: np.ndarray) -> np.ndarray:
     """Composite-rigid-body algorithm, shape (n, dof, dof)."""
     data, crba = model.createData(), pin.crba
     out = np.empty((len(q), model.nv, model.nv))
@@ -56,7 +57,7 @@ def mass_matrix(model: pin.Model, q: np.ndarray) -> np.ndarray:
     return out
 
 
-def coriolis_matrix(model: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+def coriolis_matrix(model: Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """C(q, v) with Ṁ = C + Cᵀ, shape (n, dof, dof)."""
     data, coriolis = model.createData(), pin.computeCoriolisMatrix
     out = np.empty((len(q), model.nv, model.nv))
@@ -65,7 +66,7 @@ def coriolis_matrix(model: pin.Model, q: np.ndarray, v: np.ndarray) -> np.ndarra
     return out
 
 
-def regressor(model: pin.Model, columns: slice, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+def regressor(model: Model, columns: slice, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
     """Columns of the joint torque regressor, shape (n, dof, number of columns)."""
     data, compute, shape = model.createData(), pin.computeJointTorqueRegressor, (model.nv, 10 * model.nv)
     out = np.empty((len(q), model.nv, len(range(*columns.indices(10 * model.nv)))))
@@ -74,7 +75,7 @@ def regressor(model: pin.Model, columns: slice, q: np.ndarray, v: np.ndarray, a:
     return out
 
 
-def tip_jacobian(model: pin.Model, frame: int, q: np.ndarray) -> np.ndarray:
+def tip_jacobian(model: Model, frame: int, q: np.ndarray) -> np.ndarray:
     """Velocity of a frame per joint velocity, axes of the base, shape (n, 6, dof)."""
     data, jacobian = model.createData(), pin.computeFrameJacobian
     out = np.empty((len(q), 6, model.nv))
@@ -83,7 +84,7 @@ def tip_jacobian(model: pin.Model, frame: int, q: np.ndarray) -> np.ndarray:
     return out
 
 
-def orientation(model: pin.Model, joint: int, q: np.ndarray) -> np.ndarray:
+def orientation(model: Model, joint: int, q: np.ndarray) -> np.ndarray:
     """Axes of the frame behind a joint as columns in the axes of the base, shape (n, 3, 3)."""
     data, place, out = model.createData(), pin.forwardKinematics, np.empty((len(q), 3, 3))
     for i in range(len(q)):
@@ -92,7 +93,7 @@ def orientation(model: pin.Model, joint: int, q: np.ndarray) -> np.ndarray:
     return out
 
 
-def energy(compute: Callable, model: pin.Model, *motion: np.ndarray) -> np.ndarray:
+def energy(compute: Callable, model: Model, *motion: np.ndarray) -> np.ndarray:
     """An energy by the given Pinocchio call, shape (n,)."""
     data = model.createData()
     return np.array([compute(model, data, *row) for row in zip(*motion, strict=True)], dtype=float)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
 from lagnet.rigid_body.xml_files import XmlFile
 
 NONE_HELD: Mapping[str, float] = MappingProxyType({})
@@ -32,7 +32,7 @@ class Description:
         warnings: what the reader noticed and survived.
     """
 
-    model: pin.Model
+    model: Model
     joint_types: tuple[str, ...]
     links: tuple[str, ...]
     link_inertials: tuple[tuple[str, np.ndarray], ...]
@@ -43,7 +43,7 @@ class Description:
     warnings: tuple[str, ...] = ()
 
 
-def moving_bodies(model: pin.Model) -> tuple[str, ...]:
+def moving_bodies(model: Model) -> tuple[str, ...]:
     """Name of the first body frame on each joint: the link that the joint moves; others behind it are welded on."""
     names = {}
     for frame in model.frames:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.rigid_body.robot import Robot
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def kinematic_tree(robot: Robot) -> KinematicTree:
     )
 
 
-def _motion_axes(model: pin.Model) -> np.ndarray:
+def _motion_axes(model: Model) -> np.ndarray:
     """Linear and angular velocity of each joint's frame at unit speed of that joint, shape (dof, 6), in that frame."""
     data = model.createData()
     pin.computeJointJacobians(model, data, pin.neutral(model))

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body.description import moving_bodies
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
 
 SINGULAR = 1e-10  # of the largest eigenvalue of a mass matrix scaled to a unit diagonal; real arms stay above 1e-4
 POSES = 5
 
 
-def mass_warnings(model: pin.Model, where: str) -> list[str]:
+def mass_warnings(model: Model, where: str) -> list[str]:
     """Warnings on bodies without mass and on a mass matrix without inverse.
 
     Raises:
@@ -26,7 +26,7 @@ def mass_warnings(model: pin.Model, where: str) -> list[str]:
     return warnings + _singular_warnings(model)
 
 
-def _check_subtrees(model: pin.Model, where: str) -> None:
+def _check_subtrees(model: Model, where: str) -> None:
     for i in range(1, model.njoints):
         bodies = [model.inertias[j] for j in model.subtrees[i]]
         if all(body.mass == 0 and not np.any(body.inertia) for body in bodies):
@@ -37,7 +37,7 @@ def _check_subtrees(model: pin.Model, where: str) -> None:
             )
 
 
-def _singular_warnings(model: pin.Model) -> list[str]:
+def _singular_warnings(model: Model) -> list[str]:
     """Looks at a few random poses: an arm whose mass matrix has no inverse has no forward dynamics."""
     generator, data = np.random.default_rng(0), model.createData()
     for _ in range(POSES):

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from xml.etree.ElementTree import Element
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
 from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.mjcf_checks import SUPPORTED, reduce_mjcf
 from lagnet.rigid_body.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
+from lagnet.rigid_body.untyped_pinocchio import SE3, Inertia, JointModel, Model, pin
 from lagnet.rigid_body.urdf_checks import numbers
 from lagnet.rigid_body.xml_files import XmlFile
 
@@ -90,11 +90,11 @@ class _Reader:
     from_shapes: bool
     auto_limits: bool
     held: Mapping[str, float]
-    model: pin.Model = field(default_factory=pin.Model)
+    model: Model = field(default_factory=pin.Model)
     types: list[str] = field(default_factory=list)
     declared: dict[str, list[str]] = field(default_factory=lambda: {"friction": [], "spring": [], "gravcomp": []})
 
-    def add_body(self, body: Element, parent: int, offset: pin.SE3, inherited: str) -> None:
+    def add_body(self, body: Element, parent: int, offset: SE3, inherited: str) -> None:
         """Adds a body and all that hangs on it; offset is the frame around it in the frame of the joint before."""
         inherited = body.get("childclass", inherited)
         place = offset * placement(body, body, self.reading)
@@ -110,7 +110,7 @@ class _Reader:
         for child in body.findall("body"):
             self.add_body(child, parent, place, inherited)
 
-    def _add_frame(self, body: Element, joint: int, place: pin.SE3) -> None:
+    def _add_frame(self, body: Element, joint: int, place: SE3) -> None:
         before = self.model.getFrameId(self.model.names[joint], pin.FrameType.JOINT) if joint else 0
         name = body.get("name", "")
         self.model.addFrame(pin.Frame(name, joint, before, place, pin.FrameType.BODY, pin.Inertia.Zero()))
@@ -123,7 +123,7 @@ class _Reader:
             raise RobotError(what, where=self.reading.where, choices=sorted(self.defaults))
         return Element(element.tag, self.defaults[name].get(element.tag, {}) | element.attrib)
 
-    def _inertia(self, body: Element, inherited: str) -> pin.Inertia:
+    def _inertia(self, body: Element, inherited: str) -> Inertia:
         inertial = body.find("inertial")
         if inertial is not None and not self.from_shapes:
             return stated_inertia(inertial, body, self.reading)
@@ -133,7 +133,7 @@ class _Reader:
             total = part if total.mass == 0 else total + part
         return total
 
-    def _add_joint(self, joint: Element, body: Element, parent: int, place: pin.SE3) -> tuple[int, pin.SE3]:
+    def _add_joint(self, joint: Element, body: Element, parent: int, place: SE3) -> tuple[int, SE3]:
         """Adds the joint of a body and returns its index and where the body lies in its frame."""
         name, (kind, axis, anchor, reference) = joint.get("name", ""), self._geometry(joint, body)
         start = place * anchor * _displacement(kind, axis, -reference)
@@ -146,12 +146,12 @@ class _Reader:
         self._declared(joint, body, index)
         return index, anchor.inverse()
 
-    def _held_at(self, joint: Element, body: Element) -> pin.SE3:
+    def _held_at(self, joint: Element, body: Element) -> SE3:
         """How far a joint that is held still moves its body from where it is drawn."""
         kind, axis, anchor, reference = self._geometry(joint, body)
         return anchor * _displacement(kind, axis, self.held[joint.get("name", "")] - reference) * anchor.inverse()
 
-    def _geometry(self, joint: Element, body: Element) -> tuple[str, np.ndarray, pin.SE3, np.ndarray]:
+    def _geometry(self, joint: Element, body: Element) -> tuple[str, np.ndarray, SE3, np.ndarray]:
         """Kind, unit axis and point of a joint in its body, and the position [rad or m] at which the body is drawn."""
         name, kind, where = joint.get("name", ""), joint.get("type", "hinge"), self.reading.where
         if kind not in SUPPORTED:
@@ -206,7 +206,7 @@ def left_out_warnings(declared: Mapping[str, list[str]]) -> list[str]:
     return [f"{words[key]} {', '.join(declared[key])} is left out" for key in words if declared[key]]
 
 
-def _joint_model(kind: str, axis: np.ndarray) -> pin.JointModel:
+def _joint_model(kind: str, axis: np.ndarray) -> JointModel:
     """A joint along x, y or z where it can be, which is computed faster than one along any axis."""
     along = np.flatnonzero(axis == 1.0)
     if kind == "hinge":
@@ -216,7 +216,7 @@ def _joint_model(kind: str, axis: np.ndarray) -> pin.JointModel:
     return plain[along[0]]() if along.size else pin.JointModelPrismaticUnaligned(axis)
 
 
-def _displacement(kind: str, axis: np.ndarray, position: np.ndarray) -> pin.SE3:
+def _displacement(kind: str, axis: np.ndarray, position: np.ndarray) -> SE3:
     if kind == "slide":
         return pin.SE3(np.eye(3), axis * position)
     return pin.SE3(pin.exp3(axis * position), np.zeros(3))

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.untyped_pinocchio import SE3, Inertia, pin
 from lagnet.rigid_body.urdf_checks import numbers
 
 DENSITY = "1000"  # [kg/m³], MuJoCo's default
@@ -29,7 +29,7 @@ class Reading:
         return np.deg2rad(value) if self.degrees else np.asarray(value, dtype=float)
 
 
-def placement(element: Element, owner: Element, reading: Reading) -> pin.SE3:
+def placement(element: Element, owner: Element, reading: Reading) -> SE3:
     """Placement of a body, inertial or shape in its parent."""
     position = numbers(element, "pos", 3, reading.where, owner, "0 0 0")
     given = [key for key in TURNS if element.get(key) is not None]
@@ -83,7 +83,7 @@ def _least_turn(z: np.ndarray) -> np.ndarray:
     return pin.exp3(axis / sine * np.arctan2(sine, z[2]))
 
 
-def stated_inertia(inertial: Element, owner: Element, reading: Reading) -> pin.Inertia:
+def stated_inertia(inertial: Element, owner: Element, reading: Reading) -> Inertia:
     """The body of an `inertial` element, in the frame of its owner."""
     (mass,) = numbers(inertial, "mass", 1, reading.where, owner)
     if inertial.get("fullinertia") is not None:
@@ -95,7 +95,7 @@ def stated_inertia(inertial: Element, owner: Element, reading: Reading) -> pin.I
     return _body(mass, place, tensor, owner, reading)
 
 
-def shape_inertia(shape: Element, owner: Element, reading: Reading) -> pin.Inertia:
+def shape_inertia(shape: Element, owner: Element, reading: Reading) -> Inertia:
     """The body of a plain solid shape, in the frame of its owner."""
     kind = shape.get("type", "sphere")
     if kind not in SIZES or shape.get("mesh") is not None:
@@ -110,7 +110,7 @@ def shape_inertia(shape: Element, owner: Element, reading: Reading) -> pin.Inert
     return _body(mass, place, np.diag(mass * moments), owner, reading)
 
 
-def _body(mass: float, place: pin.SE3, tensor: np.ndarray, owner: Element, reading: Reading) -> pin.Inertia:
+def _body(mass: float, place: SE3, tensor: np.ndarray, owner: Element, reading: Reading) -> Inertia:
     """A body of that mass and inertia tensor about its centre, in the frame of its owner.
 
     Raises:
@@ -125,7 +125,7 @@ def _body(mass: float, place: pin.SE3, tensor: np.ndarray, owner: Element, readi
         ) from None
 
 
-def _placed_shape(shape: Element, kind: str, owner: Element, reading: Reading) -> tuple[pin.SE3, np.ndarray]:
+def _placed_shape(shape: Element, kind: str, owner: Element, reading: Reading) -> tuple[SE3, np.ndarray]:
     text = shape.get("size", "").split()
     count = SIZES[kind]
     if shape.get("fromto") is None:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, final
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body import batches
@@ -17,6 +16,7 @@ from lagnet.rigid_body.description import NONE_HELD, Description
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.mjcf import read_mjcf
 from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
+from lagnet.rigid_body.untyped_pinocchio import Data, Inertia, Model, pin
 from lagnet.rigid_body.urdf import read_urdf
 from lagnet.rigid_body.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.xml_files import read_xml
@@ -267,7 +267,7 @@ class Robot:
             raise ValueError(f"joint is {joint}, expected 0 to {self.n_dof - 1} ({', '.join(self.joints)})")
         return joint % self.n_dof
 
-    def _placed(self, q: JointVector) -> pin.Data:
+    def _placed(self, q: JointVector) -> Data:
         q = np.asarray(q, dtype=float)
         if q.shape != (self.n_dof,):
             raise ValueError(f"q has shape {q.shape}, expected ({self.n_dof},): one pose")
@@ -298,17 +298,17 @@ def _frozen(values: np.ndarray) -> np.ndarray:
     return values
 
 
-def _with_gravity(model: pin.Model, gravity: np.ndarray) -> pin.Model:
+def _with_gravity(model: Model, gravity: np.ndarray) -> Model:
     model = model.copy()
     model.gravity.linear = np.asarray(gravity, dtype=float)
     return model
 
 
-def _parameters(body: pin.Inertia) -> np.ndarray:
+def _parameters(body: Inertia) -> np.ndarray:
     return parameters_of_body(body.mass, np.array(body.lever), np.array(body.inertia))
 
 
-def _inertia(row: np.ndarray) -> pin.Inertia:
+def _inertia(row: np.ndarray) -> Inertia:
     """A body from ten parameters.
 
     Raises:

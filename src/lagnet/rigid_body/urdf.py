@@ -7,12 +7,12 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
 from lagnet.rigid_body.inertia import parameters_of_body
 from lagnet.rigid_body.mass_checks import mass_warnings
+from lagnet.rigid_body.untyped_pinocchio import SE3, Model, pin
 from lagnet.rigid_body.urdf_checks import check_tree, numbers
 from lagnet.rigid_body.xml_files import XmlFile
 
@@ -135,7 +135,7 @@ def _hold(joint: Element, position: float, where: str) -> None:
     joint.set("type", "fixed")
 
 
-def _motion(joint: Element, position: float, where: str) -> pin.SE3:
+def _motion(joint: Element, position: float, where: str) -> SE3:
     axis = axis_of(joint, where)
     if joint.get("type") == "prismatic":
         return pin.SE3(np.eye(3), position * axis)
@@ -152,7 +152,7 @@ def axis_of(joint: Element, where: str) -> np.ndarray:
     return axis / length
 
 
-def origin_of(element: Element, where: str) -> pin.SE3:
+def origin_of(element: Element, where: str) -> SE3:
     """Placement given by the `origin` of a joint or an inertial."""
     origin = element.find("origin")
     if origin is None:
@@ -161,7 +161,7 @@ def origin_of(element: Element, where: str) -> pin.SE3:
     return pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz)
 
 
-def write_placement(origin: Element, placement: pin.SE3) -> None:
+def write_placement(origin: Element, placement: SE3) -> None:
     """Writes a placement into an `origin`, with digits that lose nothing."""
     origin.set("xyz", " ".join(repr(float(x)) for x in placement.translation))
     origin.set("rpy", " ".join(repr(float(x)) for x in pin.rpy.matrixToRpy(placement.rotation)))
@@ -202,7 +202,7 @@ def _leave_out_friction(joints: Mapping[str, Element]) -> list[str]:
     return friction_warning(found)
 
 
-def _build(root: Element, where: str) -> pin.Model:
+def _build(root: Element, where: str) -> Model:
     text = ElementTree.tostring(root, encoding="unicode")
     try:
         model = pin.buildModelFromXML(text)

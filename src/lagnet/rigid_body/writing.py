@@ -13,11 +13,11 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from lagnet.errors import RobotError
 from lagnet.files import write_whole
 from lagnet.rigid_body.description import Description
+from lagnet.rigid_body.untyped_pinocchio import Inertia, Model, pin
 from lagnet.rigid_body.urdf import hold_joints
 
 BASE = "base"
@@ -105,7 +105,7 @@ def _welded(link: str, fixed: Mapping[str, list[str]]) -> list[str]:
     return found
 
 
-def _set_inertial(link: Element, body: pin.Inertia) -> None:
+def _set_inertial(link: Element, body: Inertia) -> None:
     inertial = link.find("inertial")
     if inertial is None:
         inertial = SubElement(link, "inertial")
@@ -137,7 +137,7 @@ def _bare_urdf(description: Description) -> Element:
     return root
 
 
-def _urdf_limit(model: pin.Model, k: int) -> dict[str, str]:
+def _urdf_limit(model: Model, k: int) -> dict[str, str]:
     """Limits of a joint; what is unlimited is written as a number no arm reaches, since URDF knows no infinity."""
     values = {
         "lower": model.lowerPositionLimit[k],
@@ -174,7 +174,7 @@ def _mjcf_body(parent: Element, description: Description, i: int) -> Element:
     return body
 
 
-def axis(model: pin.Model, i: int) -> np.ndarray:
+def axis(model: Model, i: int) -> np.ndarray:
     """Axis of joint i in its own frame."""
     kind = model.joints[i].shortname()
     if "Unaligned" in kind:

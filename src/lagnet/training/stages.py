@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 import equinox as eqx
 import jax
@@ -50,7 +51,7 @@ def in_stages(start: Augmented, task: Task) -> Fitted:
         variance=task.samples.tau.var(axis=0),
     )
     second = fit(Augmented(Massless(), start.residual, start.parity), left)
-    found = Augmented(first.dynamics, second.dynamics.residual, start.parity)
+    found = Augmented(first.dynamics, cast(Augmented, second.dynamics).residual, start.parity)
     history = first.history.followed_by(second.history)
     return as_borne_out(replace(second, dynamics=found, history=history), task)
 

@@ -15,6 +15,7 @@ from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_
 from lagnet.diagnosis.motion.selection import SelectionLimits
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
+from lagnet.models.corrected.changed_bodies import Correction
 from lagnet.models.corrected.servo_driven import ServoDrivenModel
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
@@ -123,7 +124,7 @@ def _nominal(robot: Any, servo: NominalServo | None) -> tuple[Any, NominalServo]
         raise DiagnosisError(
             "motion is diagnosed against rigid bodies", next_step="give a URDF, an MJCF, a name such as ur5"
         )
-    bodies = robot.bodies() if hasattr(robot, "bodies") and callable(robot.bodies) else robot
+    bodies: Any = robot.bodies() if isinstance(robot, Correction) else robot
     if servo is not None:
         return bodies, servo
     given, notes = position_actuators(cast(Robot, bodies))

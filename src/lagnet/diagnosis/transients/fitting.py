@@ -111,7 +111,7 @@ def _starts(near: Problem, event: EventInterval, power: np.ndarray) -> list[Name
     contact = law.nearest(_solve(columns, columns * weight, series.rest[rows]))
     interval = _whole(near, series, event)
     out = [NamedEffect(law.name, None, contact, interval, event.recording)]
-    load = _load_like(contact, np.asarray(near.nominal.gravity, dtype=float))
+    load = _load_like(contact, np.asarray(motion.bodies.gravity, dtype=float))
     return [*out, NamedEffect(Payload.name, None, load, interval, event.recording)] if load else out
 
 

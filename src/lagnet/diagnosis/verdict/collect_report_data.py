@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -138,12 +139,11 @@ def _comparisons(state: DiagnosisState) -> tuple[Comparison, ...]:
 
 def _skeleton(problem: Problem) -> Skeleton | None:
     """The arm in the middle of its recorded motion."""
-    model = problem.nominal
-    try:
-        q = np.median(np.concatenate([p.q for p in problem.fit]), axis=0)
-        return Skeleton(model.skeleton(q), model.joint_axes(q))
-    except AttributeError:
-        return None  # a learned model has no bodies
+    model: Any = problem.nominal
+    if not hasattr(model, "skeleton") or not hasattr(model, "joint_axes"):
+        return None  # a learned model has no frames
+    q = np.median(np.concatenate([p.q for p in problem.fit]), axis=0)
+    return Skeleton(model.skeleton(q), model.joint_axes(q))
 
 
 def _motion(problem: Problem, corrected: list[np.ndarray]) -> ArmMotion | None:
