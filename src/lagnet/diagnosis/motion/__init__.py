@@ -1,1 +1,1 @@
-"""Diagnosis on motion: recordings of commands and positions, judged by rollouts of the commands alone."""
+"""Diagnosis on motion: recordings of commands and positions against rollouts of the commands alone."""

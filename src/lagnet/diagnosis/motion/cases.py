@@ -1,4 +1,4 @@
-"""Each joint of a motion problem as a case: data to fit and to judge by, a first law, typical sizes."""
+"""Builds the `JointCase` of each joint: windows to fit and to validate on, a first law, typical sizes."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import numpy as np
 
 from lagnet.diagnosis.motion.equation_error import FirstLaw, first_law
 from lagnet.diagnosis.motion.fitting import JointData
+from lagnet.diagnosis.motion.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.problem import MotionProblem
-from lagnet.diagnosis.motion.selection import JointCase, SelectionLimits
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.catalogue import SERVO_CATALOGUE
 from lagnet.servos.effect import Scales
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
 
-LEAST_ERROR = 1e-4  # [rad] what the discretisation of a rollout leaves
-JUDGED = 4  # one window in so many of the fitted recordings judges
-SAMPLES = 15000  # that a search looks at; the last fit takes all
+LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
+EVERY = 4  # one window in so many of the fitted recordings is for validation
+SAMPLES = 15000  # that a search uses; the last fit uses all
 ESTIMATED: tuple[tuple[str, ...], ...] = (("kp",), ("viscous",))  # free from the start where no servo is given
 
 
@@ -33,12 +33,14 @@ def joint_case(
     """The case of one joint.
 
     Args:
-        problem: all recordings; the first `fitted` of them may be fitted, the others judge alone.
-        joint: its index; servo: the nominal one.
-        reference: kp of a servo that nothing is known of where no load sets it [N m/rad].
+        problem: all recordings; the first `fitted` of them may be fitted, the others are for validation.
+        joint: its index.
+        servo: the nominal one.
+        limits: where effects are named.
+        reference: kp of a servo without a nominal law where no load determines it [N m/rad].
     """
     series, speed = problem.series[joint], problem.speed[:, joint]
-    to_fit, to_judge = _divided(problem, fitted, joint)
+    to_fit, to_validate = _divided(problem, fitted, joint)
     resolution = encoder_step(series.q)
     moving = (np.abs(speed) > 3.0 * resolution / 0.1 + 1e-4) & _inside(problem, fitted)
     start = _first(problem, joint, moving, servo, reference)
@@ -53,9 +55,9 @@ def joint_case(
         base = (*base, ("back_emf",))
     floor = max(0.5 * resolution, LEAST_ERROR)
     quick = min(2.0 * problem.step, 0.01)
-    data, held = (JointData(series, _thinned(w, series, SAMPLES), quick) for w in (to_fit, to_judge))
+    data, validation = (JointData(series, _thinned(w, series, SAMPLES), quick) for w in (to_fit, to_validate))
     scales = _scales(series, speed, moving, law, start)
-    return JointCase(data, held, law, start.law, start.scale_is_set, base, scales, floor, excited, limits)
+    return JointCase(data, validation, law, start.law, start.scale_is_set, base, scales, floor, excited, limits)
 
 
 def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
@@ -67,12 +69,12 @@ def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
 
 
 def _divided(problem: MotionProblem, fitted: int, joint: int) -> tuple[Windows, Windows]:
-    """Windows to fit and windows to judge by: all that is held out, and every fourth of the others."""
+    """Windows to fit, and windows for validation: all that is held out, and every fourth of the others."""
     windows, inside = problem.windows(joint), _inside(problem, fitted)
     of_fit = np.flatnonzero(inside[windows.first])
-    judged = ~inside[windows.first]
-    judged[of_fit[2::JUDGED]] = True
-    return _pick(windows, np.flatnonzero(~judged)), _pick(windows, np.flatnonzero(judged))
+    validation = ~inside[windows.first]
+    validation[of_fit[2::EVERY]] = True
+    return _pick(windows, np.flatnonzero(~validation)), _pick(windows, np.flatnonzero(validation))
 
 
 def windows_to_fit(problem: MotionProblem, fitted: int, joint: int) -> Windows:
@@ -86,14 +88,14 @@ def _pick(windows: Windows, rows: np.ndarray) -> Windows:
 
 
 def encoder_step(q: np.ndarray) -> float:
-    """Smallest step between recorded positions [rad]; of unquantised positions nearly zero."""
+    """Resolution of the encoder, 1 % quantile of |Δq| > 0 [rad]; of unquantised positions nearly zero."""
     steps = np.abs(np.diff(q))
     steps = steps[steps > 1e-9]
     return float(np.quantile(steps, 0.01)) if steps.size else 0.0
 
 
 def _first(fit: MotionProblem, joint: int, moving: np.ndarray, servo: NominalServo, reference: float) -> FirstLaw:
-    """A start; where no load sets the scale, the nominal damping does, else the reference gain."""
+    """The law of the equation error; where no load sets its scale, the nominal damping does, or the reference gain."""
     acceleration = np.concatenate(
         [
             np.gradient(fit.speed[r.first : r.last + 1, joint], fit.series[joint].time[r.first : r.last + 1])
@@ -112,7 +114,7 @@ def _first(fit: MotionProblem, joint: int, moving: np.ndarray, servo: NominalSer
 
 
 def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
-    """The same motion with every torque of the servo multiplied."""
+    """c · law: every torque of the servo multiplied by c, which gives the same motion where there is no load."""
     out = law.copy()
     for name in (
         "kp",
@@ -133,20 +135,20 @@ def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
 
 def _scales(series: JointSeries, speed: np.ndarray, moving: np.ndarray, law: np.ndarray, start: FirstLaw) -> Scales:
     error = float(np.sqrt(np.mean((series.command - series.q) ** 2))) + 1e-9
-    pace = float(np.sqrt(np.mean(speed[moving] ** 2))) if moving.any() else 1.0
+    rms_speed = float(np.sqrt(np.mean(speed[moving] ** 2))) if moving.any() else 1.0
     kp = float(start.law[KP])
     inertia = float(series.mass.mean() + law[INDEX["rotor"]])
     sample = float(np.median(np.diff(series.time)))
-    return Scales(kp * error, max(pace, 1e-6), error, max(inertia, 1e-9), sample, kp)
+    return Scales(kp * error, max(rms_speed, 1e-6), error, max(inertia, 1e-9), sample, kp)
 
 
 def _thinned(windows: Windows, series: JointSeries, most: int) -> Windows:
-    """The windows with most motion, and every fifth of the others, up to a number of samples."""
+    """Windows of at most so many samples: first every second one by decreasing travel, then the others."""
     sizes = windows.last - windows.first
     if sizes.sum() <= most:
         return windows
     travel = np.array([np.ptp(series.q[a : b + 1]) for a, b in zip(windows.first, windows.last, strict=True)])
-    busy = np.argsort(-travel)
-    order = np.concatenate([busy[::2], busy[1::2][::-1]])  # the busiest half first, then the quietest of the others
+    by_travel = np.argsort(-travel)
+    order = np.concatenate([by_travel[::2], by_travel[1::2][::-1]])
     keep = np.sort(order[: max(1, int(np.searchsorted(np.cumsum(sizes[order]), most)))])
     return _pick(windows, keep)

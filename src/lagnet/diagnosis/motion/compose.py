@@ -1,4 +1,4 @@
-"""Puts what was found on motion into a verdict."""
+"""Composes the verdict of a diagnosis on motion from the diagnoses of its joints and the rollouts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KP, LAW, NAMES
 
-ABOVE = 2.0  # times the resolution that a motion error must exceed to count
+ABOVE = 2.0  # least motion error over the resolution to be significant
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 Rollouts = tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]]
 
@@ -91,8 +91,8 @@ def compose_motion_verdict(
         abstentions=_abstentions(joints, found, servo),
         warnings=tuple(dict.fromkeys([*servo.warnings, *(w for r in (*fit, *held) for w in r.warnings)])),
     )
-    rest = tuple(None if d is None or d.rest is None else asdict(d.rest) for d in found)
-    return MotionVerdict(verdict, errors, _servo_of(servo, found, joints), rest, _rejected(joints, found))
+    bands = tuple(None if d is None or d.rest is None else asdict(d.rest) for d in found)
+    return MotionVerdict(verdict, errors, _servo_of(servo, found, joints), bands, _rejected(joints, found))
 
 
 def _nominal_of(robot: Any) -> dict[str, Any]:
@@ -117,7 +117,7 @@ def _recording(recording: Recording, role: str) -> dict[str, Any]:
 
 
 def _signals(parts: Sequence[Recording], found: Sequence[JointDiagnosis | None]) -> list[dict[str, np.ndarray]]:
-    """What errors are located by, for each joint; loads are those of the nominal bodies."""
+    """q, v, load, command and time of each joint, for locating errors; loads are those of the nominal bodies."""
     speed = np.concatenate([motion_rates(part.time, part.q)[0] for part in parts])
     out = []
     for j, diagnosis in enumerate(found):
@@ -147,9 +147,9 @@ def _mismatch(
 def _unexplained(
     name: str, joint: int, nominal: np.ndarray, corrected: np.ndarray, floor: float, signals: dict[str, np.ndarray]
 ) -> Unexplained:
-    rest = float(np.mean(corrected**2))
-    above = rest > (ABOVE * floor) ** 2
-    share = min(1.0, rest / max(float(np.mean(nominal**2)), 1e-300))
+    power = float(np.mean(corrected**2))
+    above = power > (ABOVE * floor) ** 2
+    share = min(1.0, power / max(float(np.mean(nominal**2)), 1e-300))
     return Unexplained(name, bool(above), share, predictors(corrected, signals, joint) if above else ())
 
 
@@ -167,7 +167,7 @@ def _effect(name: str, found: JointDiagnosis, comparison: Comparison, total: flo
         value = values[p.name]
         low, high = found.intervals.get(names[0], (value, value))
         parameters.append(NamedParameter(p.name, value, p.unit, (min(low, value), max(high, value))))
-    told = tuple(parameters if found.case.scale_is_set else (as_ratio(p, kp) for p in parameters))
+    reported = tuple(parameters if found.case.scale_is_set else (as_ratio(p, kp) for p in parameters))
     power = float(np.exp(2.0 * found.named.blocks).mean()) / max(float(np.var(found.case.fit.series.q)), 1e-12)
     evidence = EffectEvidence(
         power * float(np.exp(2.0 * comparison.gain)),
@@ -177,9 +177,9 @@ def _effect(name: str, found: JointDiagnosis, comparison: Comparison, total: flo
         comparison.log10_odds,
     )
     nominal = {p.name: before[p.name] for p in law.parameters if abs(before[p.name]) not in (0.0, 1e9)}
-    words = explain_effect(law.name, name, told, comparison.tied, comparison.gain, nominal)
+    words = explain_effect(law.name, name, reported, comparison.tied, comparison.gain, nominal)
     status = "tied" if comparison.tied else "named"
-    return EffectFound(law.name, name, status, comparison.tied, told, evidence, words)
+    return EffectFound(law.name, name, status, comparison.tied, reported, evidence, words)
 
 
 def _abstentions(
@@ -208,7 +208,7 @@ def _abstentions(
 
 
 def _servo_of(servo: NominalServo, found: Sequence[JointDiagnosis | None], joints: Sequence[str]) -> dict[str, Any]:
-    """Where the nominal servos came from, and every law that differs from neutral, before and after."""
+    """Source of the nominal servos, and the parameters of each law that are not neutral, before and after."""
     rows = []
     for j, diagnosis in enumerate(found):
         before = servo.laws[j] if diagnosis is None or servo.known[j] else diagnosis.nominal

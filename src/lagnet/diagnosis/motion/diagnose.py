@@ -1,4 +1,4 @@
-"""Commands in, motion out: what a nominal robot and its servos lack, judged by rollouts of held-out recordings."""
+"""q̂(t) from commands u(t): what a nominal robot and its servos lack, by rollouts of held-out recordings."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from lagnet.diagnosis.motion.cases import joint_case
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
+from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis, diagnose_joint
 from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
-from lagnet.diagnosis.motion.selection import SelectionLimits
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.changed_bodies import Correction
@@ -26,18 +26,20 @@ from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KD, KP
 from lagnet.servos.servo_file import servo_of_values
 
-STILL = 3  # encoder steps that a joint must move by to be diagnosed
-REFERENCE = 1.0  # [N m/rad] kp in which torques are written where nothing at all sets their scale
+LEAST_STEPS = 3  # changes of position that a joint must show to be diagnosed
+REFERENCE = 1.0  # [N m/rad] kp where nothing determines the scale of torques
 
 
 @dataclass(frozen=True, eq=False)
 class MotionDiagnosis:
-    """What a diagnosis on motion gives back.
+    """The result of a diagnosis on motion.
 
     Args:
-        verdict: the conclusions; corrected: the robot with its corrected servos; nominal: with those assumed.
-        joints: what was found at each joint, None for one that does not move.
-        fit_recordings, holdout_recordings: what was used for what.
+        verdict: the conclusions.
+        corrected: the robot with its corrected servos.
+        nominal: the robot with its nominal servos.
+        joints: diagnosis of each joint, None for one that does not move.
+        fit_recordings, holdout_recordings: those that were fitted, and those that were not.
         nominal_rollouts, corrected_rollouts: for each held-out trajectory, shape (n, dof) [rad or m].
         problem: the arrays behind it; the first `fitted` recordings were fitted.
     """
@@ -81,7 +83,7 @@ def diagnose_motion(
         holdout: recordings that are not fitted; None: the last fifth of each recording.
         servo: the nominal servos; None: those of the MJCF's actuators, else estimated.
         gains: the controller's gains in each recording, then in each of `holdout`, relative to the nominal servo's.
-        limits: what a name must stand.
+        limits: where effects are named.
         seed: kept with the verdict; nothing here is random.
 
     Raises:
@@ -106,8 +108,8 @@ def diagnose_motion(
     named = ServoDrivenModel(
         bodies, np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)]), scales, supply
     )
-    of_names = tuple(_roll(named, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
-    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, of_names), seed)
+    with_names = tuple(_roll(named, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
+    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed)
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
 
 
@@ -116,7 +118,7 @@ def _as_given(servo: NominalServo, joint: int, estimated: np.ndarray) -> np.ndar
 
 
 def _nominal(robot: Any, servo: NominalServo | None) -> tuple[Any, NominalServo]:
-    """The bodies and the servos that are assumed."""
+    """The nominal bodies and servos."""
     if isinstance(robot, ServoDrivenModel):
         given = NominalServo(robot.laws, (True,) * robot.n_dof, "file")
         return robot.nominal, servo or given
@@ -156,11 +158,11 @@ def _divide(
 def _diagnose_joints(
     problem: MotionProblem, fitted: int, servo: NominalServo, limits: SelectionLimits
 ) -> tuple[JointDiagnosis | None, ...]:
-    """Joints whose loads set the scale of their torques first: the others are written in the gain of those."""
+    """First the joints whose loads determine the scale of torques: their gain is the reference of the others."""
     cases = {}
     for joint in range(len(problem.joints)):
         q = problem.series[joint].q
-        if np.ptp(q) > 1e-6 and np.sum(np.abs(np.diff(q)) > 1e-9) > STILL:
+        if np.ptp(q) > 1e-6 and np.sum(np.abs(np.diff(q)) > 1e-9) > LEAST_STEPS:
             cases[joint] = joint_case(problem, fitted, joint, servo, limits, REFERENCE)
     found: dict[int, JointDiagnosis] = {}
     for joint, case in cases.items():
@@ -182,7 +184,7 @@ def _diagnose_joints(
 
 
 def _gain_share(found: dict[int, JointDiagnosis], servo: NominalServo) -> float | None:
-    """Found over nominal gain, the middle of the joints whose scale is set."""
+    """Median of kp over nominal kp, of the joints whose scale is determined; None without one."""
     shares = [d.named_law[KP] / servo.laws[j, KP] for j, d in found.items() if servo.known[j]]
     return float(np.median(shares)) if shares else None
 

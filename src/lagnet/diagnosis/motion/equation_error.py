@@ -1,9 +1,9 @@
-"""A first law from smoothed motion: the command error as a linear sum of load, speed, its sign and acceleration.
+"""Equation error: the command error of smoothed motion as a linear sum of load, v, sign v and a.
 
     u(t − T) − q = δ + (load + M_ii a)/kp + [f + κ |load|] sign(v) + t_v v + m a        while the joint moves
 
-Non-negative least squares for each of a few delays T; a start for rollouts, not an estimate: smoothing and quantisation
-bias it. Source: Gautier & Janot 2013 (equation error and output error).
+Non-negative least squares for each of a few delays T. It starts the fit of rollouts and is no estimate: smoothing and
+quantisation bias it. Source: Gautier & Janot 2013 (equation error and output error).
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from scipy.optimize import lsq_linear
 from lagnet.rollout.one_joint import JointSeries
 from lagnet.servos.parameters import law_vector
 
-DELAYS = np.arange(0.0, 0.11, 0.01)  # [s] that are tried
+DELAYS = np.arange(0.0, 0.11, 0.01)  # [s] T
 MOST = 20000  # samples used
-SHARE = 0.05  # of the squared error that the load must explain
-DETERMINED = 4.0  # standard errors (of blocks) that 1/kp must differ from zero by
+SHARE = 0.05  # least share of the squared error that the load explains
+DETERMINED = 4.0  # least 1/kp over its standard error, which is over blocks
 
 
 @dataclass(frozen=True, eq=False)
 class FirstLaw:
-    """A start for rollouts and whether the loads set its scale in N m; where they do not, kp is that of `reference`."""
+    """A law, and whether the loads determine its scale in N m; where they do not, kp is `reference`."""
 
     law: np.ndarray
     scale_is_set: bool
@@ -33,21 +33,22 @@ class FirstLaw:
 def first_law(
     series: JointSeries, speed: np.ndarray, acceleration: np.ndarray, moving: np.ndarray, reference: float
 ) -> FirstLaw:
-    """A law of one joint from its smoothed motion.
+    """argmin of the squared equation error over the law of one joint and T.
 
     Args:
-        series: of the joint; speed, acceleration: smoothed, shape (n,).
-        moving: shape (n,), samples in motion.
-        reference: kp to write a law in whose scale nothing sets [N m/rad].
+        series: of the joint.
+        speed, acceleration: smoothed, shape (n,).
+        moving: shape (n,), mask of samples in motion.
+        reference: kp of a law whose scale nothing determines [N m/rad].
     """
     rows = np.flatnonzero(moving & (series.enabled > 0.5))
     if rows.size < 20:
         return FirstLaw(law_vector(kp=reference), False)
     rows = rows[:: max(1, rows.size // MOST)]
     clock = _unbroken(series.time)
-    load, side, v, a = series.load[rows], np.sign(speed[rows]), speed[rows], acceleration[rows]
+    load, direction, v, a = series.load[rows], np.sign(speed[rows]), speed[rows], acceleration[rows]
     columns = np.column_stack(
-        [load + series.mass[rows] * a, side, side * np.abs(load), v, a, np.ones_like(v)]
+        [load + series.mass[rows] * a, direction, direction * np.abs(load), v, a, np.ones_like(v)]
     )  # 1/kp, f, κ, t_v, m, δ
     best = None
     for delay in DELAYS:

@@ -16,14 +16,14 @@ from lagnet.rollout.one_joint import JointSeries, Windows, roll_out
 from lagnet.servos.parameters import INDEX, LAW
 
 HUBER = 2.0  # robust scales beyond which a residual counts linearly
-NUDGE = 2e-3  # step of a difference, in units of each parameter's size
-DAMPING = (1e-3, 1e-1, 1e1, 1e3)  # tried together in every iteration
-PRIOR = 1e-4  # weight of staying at the start, per coordinate, so that what nothing determines stays put
+DIFFERENCE = 2e-3  # step of a finite difference, in sizes of each parameter
+DAMPING = (1e-3, 1e-1, 1e1, 1e3)  # Levenberg–Marquardt factors, of which each iteration takes the best
+PRIOR = 1e-4  # weight of |x − x₀|², per coordinate, so that an undetermined coordinate stays at the start
 
 
 @dataclass(frozen=True, eq=False)
 class JointData:
-    """What a joint is fitted to: its series, the windows and the longest step of integration [s]."""
+    """Data of one joint: its series, the windows of rollouts and the longest step of integration [s]."""
 
     series: JointSeries
     windows: Windows
@@ -40,7 +40,7 @@ class JointData:
 
 @dataclass(frozen=True, eq=False)
 class Coordinates:
-    """Law parameters that are free, each group sharing one value, and the sizes they are stepped in."""
+    """Free parameters of a law, each group with one value, and the sizes by which they are scaled."""
 
     groups: tuple[tuple[str, ...], ...]
     sizes: np.ndarray
@@ -69,7 +69,15 @@ class Coordinates:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A fitted law, its cost (mean Huber loss in robust scales), residuals [rad] and sensitivities (n, k)."""
+    """A fitted law.
+
+    Args:
+        law: shape (len(LAW),).
+        cost: mean Huber loss in squared robust scales.
+        residual: shape (n,), predicted less measured positions [rad].
+        jacobian: shape (n, k), sensitivities ∂q̂/∂x.
+        scale: robust scale of the residual [rad].
+    """
 
     law: np.ndarray
     cost: float
@@ -79,23 +87,23 @@ class Fitted:
 
 
 def robust_scale(residual: np.ndarray, resolution: float) -> float:
-    """Size of an ordinary residual [rad]: 1.48 times the median, not below the resolution of the encoder."""
+    """max(1.4826 median |r|, 2 resolution), a robust standard deviation of the residual [rad]."""
     return max(1.4826 * float(np.median(np.abs(residual))), 2.0 * resolution)
 
 
 def huber(residual: np.ndarray, scale: float) -> np.ndarray:
-    """Huber's loss of each sample, in squared robust scales, shape as the residual's."""
+    """Huber's loss ρ(r/scale) of each sample, shape as the residual's."""
     size = np.abs(residual) / scale
     return np.where(size < HUBER, 0.5 * size**2, HUBER * size - 0.5 * HUBER**2)
 
 
 def sensitivities(data: JointData, coordinates: Coordinates, law: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Predicted positions (n,) and their derivatives by the coordinates in units of their sizes, (n, k)."""
+    """q̂, shape (n,), and ∂q̂/∂x by the coordinates in units of their sizes, shape (n, k)."""
     values = coordinates.read(law)
-    signs = np.where(values + NUDGE * coordinates.sizes > coordinates.upper, -1.0, 1.0)
-    moved = values + np.diag(signs * NUDGE * coordinates.sizes)
+    signs = np.where(values + DIFFERENCE * coordinates.sizes > coordinates.upper, -1.0, 1.0)
+    moved = values + np.diag(signs * DIFFERENCE * coordinates.sizes)
     found = data.predict(np.vstack([coordinates.write(law, values), coordinates.write(law, moved)]))
-    return found[0], ((found[1:] - found[0]) / (signs[:, None] * NUDGE)).T
+    return found[0], ((found[1:] - found[0]) / (signs[:, None] * DIFFERENCE)).T
 
 
 def fit_law(
@@ -107,13 +115,15 @@ def fit_law(
     iterations: int = 12,
     tolerance: float = 1e-3,
 ) -> Fitted:
-    """The law that predicts a joint's motion best, from a start.
+    """argmin of the mean Huber loss of a joint's rollouts, from a start.
 
     Args:
-        data: what is fitted; law: the start, shape (len(LAW),).
-        coordinates: what is free.
+        data: windows that are fitted.
+        law: the start, shape (len(LAW),).
+        coordinates: parameters that are free.
         scale: robust scale of the residual [rad], held fixed.
-        tolerance: relative gain of the cost below which it has converged.
+        iterations: at most.
+        tolerance: relative gain of the cost at which it has converged.
     """
     law = coordinates.write(law, coordinates.read(law))[0]
     start = coordinates.read(law) / coordinates.sizes
@@ -143,20 +153,20 @@ def _steps(
     coordinates: Coordinates,
     values: np.ndarray,
 ) -> np.ndarray:
-    """Damped Gauss–Newton steps, shape (len(DAMPING), k), that leave out what a bound holds."""
+    """−(JᵀWJ + λ diag)⁻¹ ∇, shape (len(DAMPING), k), with coordinates at an active bound fixed."""
     weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * scale)) / scale**2 / len(residual)
     normal = (jacobian * weight[:, None]).T @ jacobian
-    slope = jacobian.T @ (weight * residual) + PRIOR * away
+    gradient = jacobian.T @ (weight * residual) + PRIOR * away
     low, high = coordinates.lower / coordinates.sizes, coordinates.upper / coordinates.sizes
-    held = ((values <= low) & (slope > 0.0)) | ((values >= high) & (slope < 0.0))
-    normal[held], normal[:, held], slope[held] = 0.0, 0.0, 0.0
+    active = ((values <= low) & (gradient > 0.0)) | ((values >= high) & (gradient < 0.0))
+    normal[active], normal[:, active], gradient[active] = 0.0, 0.0, 0.0
     diagonal = np.diag(normal) + PRIOR
     normal = normal + PRIOR * np.eye(len(values))
-    return np.array([-np.linalg.solve(normal + d * np.diag(diagonal), slope) for d in DAMPING])
+    return np.array([-np.linalg.solve(normal + d * np.diag(diagonal), gradient) for d in DAMPING])
 
 
 def free_coordinates(groups: Sequence[tuple[str, ...]], law: np.ndarray, sizes: dict[str, float]) -> Coordinates:
-    """Coordinates of named groups, stepped in their present size or a typical one, whichever is larger."""
+    """Coordinates of parameter groups, scaled by their present value or a typical one, whichever is larger."""
     unique = tuple(dict.fromkeys(groups))
-    now = [max(abs(float(law[INDEX[g[0]]])), sizes[g[0]]) for g in unique]
-    return Coordinates(unique, np.array(now))
+    sizes_of_groups = [max(abs(float(law[INDEX[g[0]]])), sizes[g[0]]) for g in unique]
+    return Coordinates(unique, np.array(sizes_of_groups))

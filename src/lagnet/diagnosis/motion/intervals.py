@@ -1,7 +1,7 @@
-"""Intervals of a law's parameters, from how much the windows of the motion disagree about them.
+"""Cov = H⁻¹ S H⁻¹, the sandwich covariance of a law's parameters, and 95 % intervals.
 
-Cov = H⁻¹ S H⁻¹ with H the Gauss–Newton matrix and S the scatter of the windows' scores: residuals of a rollout are
-correlated and not those of the law alone, so samples are not counted as if they were independent. Source: White 1982.
+H is the Gauss–Newton matrix and S the covariance of the windows' scores: residuals of a rollout are correlated and not
+those of the law alone, so that samples are not independent. Source: White 1982.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def law_intervals(
     ridge = 1e-9 * max(float(np.trace(normal)), 1e-30) / len(normal)
     inverse = np.linalg.inv(normal + ridge * np.eye(len(normal)))
     count = len(scores)
-    spread = scores - scores.mean(axis=0)
-    covariance = inverse @ (spread.T @ spread) @ inverse * count / max(1, count - len(normal))
+    centred = scores - scores.mean(axis=0)
+    covariance = inverse @ (centred.T @ centred) @ inverse * count / max(1, count - len(normal))
     half = NORMAL_95 * np.sqrt(np.maximum(np.diag(covariance), 0.0)) * coordinates.sizes
     values = coordinates.read(law)
     out = {}

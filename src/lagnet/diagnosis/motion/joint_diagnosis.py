@@ -1,4 +1,4 @@
-"""One joint from its case to its findings: nominal law, named effects against rivals, the complete law, intervals."""
+"""Diagnosis of one joint: nominal law, named effects against rivals, 95 % intervals, the complete law."""
 
 from __future__ import annotations
 
@@ -6,23 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lagnet.diagnosis.motion.block_scores import advantage
 from lagnet.diagnosis.motion.cases import windows_to_fit
 from lagnet.diagnosis.motion.fitting import JointData, fit_law, free_coordinates, robust_scale
 from lagnet.diagnosis.motion.intervals import law_intervals
+from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
 from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.diagnosis.motion.refitting import Selection, groups_of, refit, starts_with
 from lagnet.diagnosis.motion.rest import RestBand, rest_band
 from lagnet.diagnosis.motion.rivals import Comparison, compare_rivals
-from lagnet.diagnosis.motion.selection import (
-    JointCase,
-    Rejected,
-    Selection,
-    advantage,
-    groups_of,
-    refit,
-    select,
-    sizes_of,
-    starts_with,
-)
+from lagnet.diagnosis.motion.selection import Rejected, select
 from lagnet.servos.catalogue import servo_effect
 
 IDENTIFIED = (
@@ -35,20 +28,23 @@ IDENTIFIED = (
     "rotor_inertia",
     "quadratic_drag",
     "stribeck_friction",
-)  # what the complete correction may use, whether or not it can be attributed
+)  # effects of the complete law, named or not
 FURTHER = ("duty_saturation", "directional_load_friction", "quadratic_load_friction", "static_friction", "dead_band")
 
 
 @dataclass(frozen=True, eq=False)
 class JointDiagnosis:
-    """All that was found out about one joint.
+    """The findings at one joint.
 
     Args:
-        case: what it was posed as; nominal: the nominal law, fitted where no servo was given.
-        named: effects with evidence; comparisons: one for each; rejected: what was considered and not named.
+        case: data, nominal law and limits.
+        nominal: the nominal law, fitted where no servo was given.
+        named: effects with evidence.
+        comparisons: of each named effect with its rivals.
+        rejected: effects that were considered and not named.
         intervals: 95 % interval of every free law parameter of the named effects.
-        named_law: the nominal law with the named effects; law: the complete correction.
-        rest: the friction band of the rest positions, None where the joint seldom rests.
+        law: the complete correction, named or not.
+        rest: the friction band of positions at standstill, None where the joint seldom stands still.
     """
 
     case: JointCase
@@ -62,15 +58,18 @@ class JointDiagnosis:
 
     @property
     def named_law(self) -> np.ndarray:
+        """The nominal law with the named effects, shape (len(LAW),)."""
         return self.named.law
 
 
 def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointCase) -> JointDiagnosis:
-    """Everything about one joint.
+    """Selects, compares and refits the effects of one joint.
 
     Args:
         problem: all recordings, of which the first `fitted` may be fitted.
-        joint: its index; case: of it.
+        fitted: number of them.
+        joint: its index.
+        case: its data.
     """
     nominal = case.law
     if case.base:
@@ -79,7 +78,7 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     chosen, rejected = select(case)
     chosen, comparisons = compare_rivals(case, chosen)
     data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint))
-    named = _polished(case, chosen, data)
+    named = _refitted(case, chosen, data)
     scale = robust_scale(named.fitted.residual, case.floor)
     coordinates = free_coordinates(groups_of(case, named.effects), named.law, sizes_of(case.scales))
     intervals = law_intervals(data, named.law, coordinates, scale)
@@ -88,7 +87,7 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     return JointDiagnosis(case, nominal, named, comparisons, rejected, intervals, law, rest)
 
 
-def _polished(case: JointCase, chosen: Selection, data: JointData) -> Selection:
+def _refitted(case: JointCase, chosen: Selection, data: JointData) -> Selection:
     """The chosen effects fitted to every window of the fitted recordings."""
     scale = robust_scale(data.errors(chosen.law), case.floor)
     coordinates = free_coordinates(groups_of(case, chosen.effects), chosen.law, sizes_of(case.scales))
@@ -96,7 +95,7 @@ def _polished(case: JointCase, chosen: Selection, data: JointData) -> Selection:
 
 
 def _complete(case: JointCase, chosen: Selection, named: Selection, data: JointData) -> np.ndarray:
-    """The law that predicts best, whatever its causes: all plain effects beside the named ones, if that helps."""
+    """The law with all plain effects beside the named ones, where its validation score is better: for prediction."""
     contained = {c for e in chosen.effects for c in servo_effect(e).contains}
     more = [e for e in IDENTIFIED if e in case.excited and e not in {*chosen.effects, *contained}]
     more = [e for e in more if case.scale_is_set or e != "gain_error"]
@@ -117,17 +116,17 @@ def _complete(case: JointCase, chosen: Selection, named: Selection, data: JointD
                 best = better
     if advantage(chosen.blocks, best.blocks)[0] <= 0.0:
         return named.law
-    return _polished(case, best, data).law
+    return _refitted(case, best, data).law
 
 
 def _best_of(case: JointCase, law: np.ndarray, effects: tuple[str, ...], scale: float) -> Selection:
-    """The better of two starts: the law of the named effects, with and without the plain effects of smoothed motion."""
-    starts = [_spread(start, case, effects) for start in (law, _merged(law, case))]
+    """The better fit of two starts: the named law, with and without the plain effects of the equation error."""
+    starts = [_with_stribeck_speed(start, case, effects) for start in (law, _merged(law, case))]
     return min((refit(case, effects, start, scale) for start in starts), key=lambda s: s.blocks.mean())
 
 
-def _spread(law: np.ndarray, case: JointCase, effects: tuple[str, ...]) -> np.ndarray:
-    """A law whose Stribeck speed is not zero where it is free, so that a fit can move it."""
+def _with_stribeck_speed(law: np.ndarray, case: JointCase, effects: tuple[str, ...]) -> np.ndarray:
+    """The law with vs > 0 where it is free: at vs = 0 its derivative is zero."""
     out = law.copy()
     if "stribeck_friction" in effects:
         shape = servo_effect("stribeck_friction")
@@ -138,5 +137,5 @@ def _spread(law: np.ndarray, case: JointCase, effects: tuple[str, ...]) -> np.nd
 
 
 def _merged(law: np.ndarray, case: JointCase) -> np.ndarray:
-    """The law with the plain effects of the smoothed motion where it has none."""
+    """The law with the plain effects of the equation error where it is nominal."""
     return np.where(law == case.law, case.start, law) if case.scale_is_set else law

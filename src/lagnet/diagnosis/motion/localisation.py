@@ -1,4 +1,4 @@
-"""Where on its motion a joint's error is large: regimes of rest, speed, direction, load, pose and command steps."""
+"""E[e² | regime] / E[e²]: in which regimes of speed, direction, load, pose and command steps an error is large."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-LIFT = 1.25  # error power inside over that overall, from which a regime is told
-LEAST = 0.01  # share of time that a regime must have
+LIFT = 1.25  # least error power inside a regime over that overall to be reported
+LEAST = 0.01  # least share of time of a regime
 
 
 def regimes(signals: Mapping[str, np.ndarray], joint: int) -> dict[str, tuple[str, np.ndarray]]:
@@ -63,7 +63,7 @@ def locate_error(error: np.ndarray, signals: Mapping[str, np.ndarray], joint: in
 def predictors(
     error: np.ndarray, signals: Mapping[str, np.ndarray], joint: int, least: float = 0.05
 ) -> tuple[str, ...]:
-    """Signals whose value tells the error: share of its variance between ten bins of the signal, strongest first."""
+    """Signals that predict the error, strongest first: those with a share of its variance between ten of their bins."""
     variance, found = float(np.mean(error**2)) + 1e-300, []
     for name, label in (("q", "q"), ("v", "v"), ("load", "load"), ("command", "command"), ("time", "time")):
         edges = np.unique(np.quantile(signals[name], np.linspace(0.1, 0.9, 9)))

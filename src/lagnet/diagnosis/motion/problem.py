@@ -1,4 +1,4 @@
-"""What is compared on motion: every joint's commands, its measured positions and the load of the nominal bodies."""
+"""u(t), q(t) and the nominal load of every joint: the data of a diagnosis on motion, and its windows."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.command_delay import command_integral
 
 SMOOTHING = 0.16  # [s] stretch over which a cubic gives speed and acceleration
-SLOPES = 0.1  # [s] between poses at which the slope of the load is computed
-WINDOW = (1.0, 4.0)  # [s] of a rollout that starts from measured positions
+SLOPES = 0.1  # [s] between poses at which the derivative of the load is computed
+WINDOW = (1.0, 4.0)  # [s] least and greatest length of a rollout from measured positions
 WINDOWS = 60  # that there should be at least
 
 
@@ -37,8 +37,9 @@ class MotionProblem:
     """Recorded motion of all joints on the recordings' own clocks.
 
     Args:
-        joints: joint names in model order; tree: the nominal bodies.
-        series: for each joint what drives it.
+        joints: joint names in model order.
+        tree: the nominal bodies.
+        series: command, position and load of each joint.
         runs: the trajectories, one after the other.
         speed: shape (n, dof), smoothed measured speed [rad/s].
         step: longest step of integration [s].
@@ -63,7 +64,7 @@ class MotionProblem:
         return float(sum(time[run.last] - time[run.first] for run in self.runs))
 
     def windows(self, joint: int) -> Windows:
-        """Stretches that start from a joint's measured position and speed, shorter where there is little motion."""
+        """Windows of rollouts from a joint's measured position and speed, shorter for short recordings."""
         length = float(np.clip(self.duration / WINDOWS, *WINDOW))
         time, rows = self.series[joint].time, []
         for run in self.runs:
@@ -83,7 +84,7 @@ def pose_motion_problem(
     Args:
         recordings: with commands, joints as the tree's.
         tree: the nominal bodies.
-        gains: the controller's gains in each recording over those of the law, 1 where None.
+        gains: gains of the controller in each recording over those of the law, 1 where None.
         voltage: nominal supply [V]; 0: the median of what was recorded.
 
     Raises:
@@ -107,6 +108,7 @@ def pose_motion_problem(
 
 
 def median_voltage(recordings: Sequence[Recording]) -> float:
+    """Median of the recorded supply [V]; 0 where none was recorded."""
     found = [r.voltage[np.isfinite(r.voltage)] for r in recordings if r.voltage is not None]
     return float(np.median(np.concatenate(found))) if found else 0.0
 
@@ -138,12 +140,12 @@ def _block(part: Recording, tree: KinematicTree, gain: float, voltage: float) ->
 
 
 def motion_rates(time: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Speed and acceleration by local cubics over `SMOOTHING` seconds, each of shape (n, dof)."""
+    """v and a by local cubics over `SMOOTHING` seconds (Savitzky–Golay), each of shape (n, dof)."""
     half = max(2, round(0.5 * SMOOTHING / float(np.median(np.diff(time)))))
     length = min(2 * half + 1, len(time) - 1 + len(time) % 2)
-    pace = np.asarray(savgol_filter(time, length, 3, deriv=1))[:, None]
-    speed, bend = (np.asarray(savgol_filter(q, length, 3, deriv=order, axis=0)) for order in (1, 2))
-    return speed / pace, bend / pace**2
+    samples = np.asarray(savgol_filter(time, length, 3, deriv=1))[:, None]
+    speed, acceleration = (np.asarray(savgol_filter(q, length, 3, deriv=order, axis=0)) for order in (1, 2))
+    return speed / samples, acceleration / samples**2
 
 
 def is_a_servo_recording(recording: Any) -> bool:

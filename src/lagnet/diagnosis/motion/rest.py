@@ -1,6 +1,6 @@
-"""What a joint at rest says without any speed: |u − q − δ − g/kp| ≤ f + κ |g|, an inequality for every sample.
+"""|u − q − δ − g/kp| ≤ f + κ |g|, an inequality for every sample of a joint at rest: its friction band.
 
-A joint at rest lies anywhere inside its friction band, so rest gives bounds and not equations. Divided by kp the bounds
+A joint at rest lies anywhere inside its friction band: it gives bounds and no equations. Divided by kp the bounds
 are linear in (δ, 1/kp, f, κ): the narrowest band that holds all but a share of the samples is a linear programme. Where
 loads do not differ nothing sets 1/kp: then the band is that of the error alone. Source: Koenker & Bassett 1978 (the
 linear programme of a quantile).
@@ -15,11 +15,11 @@ from scipy.optimize import linprog
 
 from lagnet.rollout.one_joint import JointSeries
 
-STILL = 3.0  # resolutions that a joint at rest may move within `SPAN`
+STILL = 3.0  # greatest movement of a joint at rest within `SPAN`, in resolutions
 SPAN = 0.3  # [s]
 MOST = 800  # samples given to the linear programme
 OUTSIDE = 0.02  # share of samples that may lie outside the band
-LOADED = 0.05  # spread of loads, over their size, below which 1/kp is not asked for
+LOADED = 0.05  # range of loads over their size below which 1/kp is not determined
 
 
 @dataclass(frozen=True)
@@ -65,10 +65,10 @@ def rest_band(series: JointSeries, resolution: float) -> RestBand | None:
 
 
 def _narrowest(error: np.ndarray, load: np.ndarray, loaded: bool) -> tuple[float, float, float, float]:
-    """(δ, 1/kp, f, κ) of least mean half-width, with a price for every sample outside."""
+    """(δ, 1/kp, f, κ) of least mean half-width, with a penalty for every sample outside."""
     n, size = len(error), np.abs(load)
-    price = 1.0 / (OUTSIDE * n)
-    cost = np.concatenate([[0.0, 0.0, 1.0, float(size.mean())], np.full(n, price)])
+    penalty = 1.0 / (OUTSIDE * n)
+    cost = np.concatenate([[0.0, 0.0, 1.0, float(size.mean())], np.full(n, penalty)])
     above = np.column_stack([-np.ones(n), -load, -np.ones(n), -size, -np.eye(n)])
     below = np.column_stack([np.ones(n), load, -np.ones(n), -size, -np.eye(n)])
     most = None if loaded else 0.0

@@ -1,24 +1,34 @@
-"""Each named effect against its rivals: replaced by one, everything fitted again, judged on the same held-out blocks.
+"""Each named effect against its rivals: replaced by one, all parameters refitted, compared on the same held-out blocks.
 
-A rival that predicts as well ties, one that predicts better takes the place. A rival that contains the effect, or has
-more parameters, predicts as well by construction and is no tie.
+A rival that predicts as well is tied, one that predicts better replaces the effect. A rival that contains the effect,
+or has more parameters, predicts as well by construction and is no tie.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from lagnet.diagnosis.motion.block_scores import advantage
 from lagnet.diagnosis.motion.fitting import robust_scale
-from lagnet.diagnosis.motion.selection import JointCase, Selection, advantage, refit, starts_with, without
+from lagnet.diagnosis.motion.joint_case import JointCase
+from lagnet.diagnosis.motion.refitting import Selection, refit, starts_with, without
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
-ALIKE = {"viscous_friction": ("gain_error",)}  # laws that positions cannot tell apart: Fv v and kd v
+EQUIVALENT = {"viscous_friction": ("gain_error",)}  # observationally equivalent: Fv v and kd v
 MOST_SWAPS = 3
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One effect against its rivals: the gain of its presence, ties, and the best rival with its odds."""
+    """One effect against its rivals.
+
+    Args:
+        effect: its name.
+        gain: of the held-out score by the effect.
+        errors: that gain over its standard error.
+        tied: rivals that predict as well.
+        best_rival, log10_odds: the rival that predicts best, and the odds of the effect over it.
+    """
 
     effect: str
     gain: float
@@ -28,27 +38,27 @@ class Comparison:
     log10_odds: float | None
 
 
-def compare_rivals(case: JointCase, now: Selection) -> tuple[Selection, tuple[Comparison, ...]]:
-    """The selection after rivals that explain better have taken their place, and one comparison for each effect."""
+def compare_rivals(case: JointCase, selected: Selection) -> tuple[Selection, tuple[Comparison, ...]]:
+    """The selection with effects replaced by rivals that predict better, and one comparison for each effect."""
     for _ in range(MOST_SWAPS):
-        results = [_against_rivals(case, now, effect) for effect in now.effects]
+        results = [_against_rivals(case, selected, effect) for effect in selected.effects]
         swapped = [better for _, better in results if better is not None]
         if not swapped:
-            return now, tuple(comparison for comparison, _ in results)
-        now = min(swapped, key=lambda s: s.blocks.mean())
-    return now, tuple(_against_rivals(case, now, effect)[0] for effect in now.effects)
+            return selected, tuple(comparison for comparison, _ in results)
+        selected = min(swapped, key=lambda s: s.blocks.mean())
+    return selected, tuple(_against_rivals(case, selected, effect)[0] for effect in selected.effects)
 
 
-def _against_rivals(case: JointCase, now: Selection, effect: str) -> tuple[Comparison, Selection | None]:
-    scale = robust_scale(now.fitted.residual, case.floor)
-    bare = without(case, now, effect, scale)
-    gain, errors = advantage(bare.blocks, now.blocks)
+def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[Comparison, Selection | None]:
+    scale = robust_scale(selected.fitted.residual, case.floor)
+    bare = without(case, selected, effect, scale)
+    gain, errors = advantage(bare.blocks, selected.blocks)
     own = len(servo_effect(effect).parameters)
-    tied, best, better = [r for r in ALIKE.get(effect, ()) if r not in now.effects], None, None
-    for rival in _rivals(case, now, effect):
+    tied, best, better = [r for r in EQUIVALENT.get(effect, ()) if r not in selected.effects], None, None
+    for rival in _rivals(case, selected, effect):
         tries = [refit(case, (*bare.effects, rival), start, scale) for start in starts_with(case, bare, rival)]
         found = min(tries, key=lambda s: s.fitted.cost)
-        lead, lead_errors = advantage(found.blocks, now.blocks)
+        lead, lead_errors = advantage(found.blocks, selected.blocks)
         if best is None or lead < best[1]:
             best = (rival, lead, lead_errors)
         if len(servo_effect(rival).parameters) > own or effect in servo_effect(rival).contains:
@@ -61,9 +71,9 @@ def _against_rivals(case: JointCase, now: Selection, effect: str) -> tuple[Compa
     return Comparison(effect, gain, errors, tuple(tied), None if best is None else best[0], odds), better
 
 
-def _rivals(case: JointCase, now: Selection, effect: str) -> list[str]:
+def _rivals(case: JointCase, selected: Selection, effect: str) -> list[str]:
     named = set(servo_effect(effect).confused_with) | {
         n for n, law in SERVO_CATALOGUE.items() if effect in law.confused_with
     }
-    contained = {c for e in now.effects for c in servo_effect(e).contains}
-    return [n for n in SERVO_CATALOGUE if n in named and n in case.excited and n not in {*now.effects, *contained}]
+    contained = {c for e in selected.effects for c in servo_effect(e).contains}
+    return [n for n in SERVO_CATALOGUE if n in named and n in case.excited and n not in {*selected.effects, *contained}]

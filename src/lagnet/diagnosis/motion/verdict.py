@@ -15,7 +15,7 @@ class PositionErrors:
 
     Args:
         rmse_nominal, rmse_named, rmse_corrected: of the nominal model, with the named effects, of the correction.
-        rmse_resolution: what the encoder's step leaves of a perfect model.
+        rmse_resolution: quantisation error of the encoder, which a perfect model has.
     """
 
     rmse_nominal: float
@@ -29,10 +29,10 @@ class MotionVerdict:
     """All that a diagnosis on motion concluded; `to_dict` is valid under verdict.schema.json.
 
     Args:
-        verdict: what both routes have; its residuals are positions [rad or m].
-        errors: for each joint in model order.
-        servo: where the nominal servos came from, and the laws before and after.
-        rest: for each joint the friction band of its rest positions, None where it seldom rests.
+        verdict: the part that both routes have; its residuals are positions [rad or m].
+        errors: of each joint in model order.
+        servo: source of the nominal servos, and the laws before and after.
+        rest: friction band of each joint at rest, None where it seldom rests.
         rejected: effects that were considered and not named, with the rule.
     """
 

@@ -18,7 +18,7 @@ def explain_effect(
     gain: float,
     nominal: dict[str, float],
 ) -> str:
-    """What, where, how large against the nominal value, and what it does for the held-out rollouts."""
+    """Effect, joint, parameters with nominal values, and the change of the error of held-out rollouts."""
     law = servo_effect(name)
     shown = ", ".join(
         f"{p.name} = {p.value:.4g} {p.unit}".rstrip()
@@ -34,13 +34,13 @@ def explain_effect(
 
 
 def separating(name: str, tied: Sequence[str]) -> str:
-    """The motion that shows the effect and that which shows its rivals."""
+    """The motions that excite the effect and its rivals."""
     shown = [servo_effect(n).shown_by for n in (name, *tied) if n in SERVO_CATALOGUE]
     return " and ".join(dict.fromkeys(shown))
 
 
 def as_ratio(parameter: NamedParameter, kp: float) -> NamedParameter:
-    """A torque in proportion to kp, where nothing sets its scale in N m; lengths and times stay."""
+    """p/kp of a torque, where nothing determines its scale in N m; lengths and times stay."""
     if parameter.unit not in RATIOS or parameter.name == "kp":
         return parameter
     low, high = parameter.ci95

@@ -1,4 +1,4 @@
-"""Writes what a diagnosis on motion promises: verdict.json, holdout_motion.parquet and the corrected model."""
+"""Files of a diagnosis on motion: verdict.json, holdout_motion.parquet and the corrected model."""
 
 from __future__ import annotations
 

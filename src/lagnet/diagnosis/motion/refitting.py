@@ -1,0 +1,84 @@
+"""argmin over the free parameters of a law with some effects: refits of one joint, from several starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.block_scores import block_scores
+from lagnet.diagnosis.motion.fitting import Fitted, fit_law, free_coordinates
+from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
+from lagnet.servos.catalogue import servo_effect
+from lagnet.servos.parameters import NAMES
+
+FULL = 12  # iterations
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """Effects of one joint and the law fitted with them.
+
+    Args:
+        effects: names of the catalogue.
+        fitted: the law.
+        blocks: shape (n_blocks,), scores on validation windows.
+    """
+
+    effects: tuple[str, ...]
+    fitted: Fitted
+    blocks: np.ndarray
+
+    @property
+    def law(self) -> np.ndarray:
+        return self.fitted.law
+
+
+def groups_of(case: JointCase, effects: Sequence[str]) -> list[tuple[str, ...]]:
+    """Law parameters that are free with these effects, each group with one value."""
+    groups = list(case.base)
+    for name in effects:
+        law = servo_effect(name)
+        groups += [*law.frees, *((extra,) for extra in law.with_it)]
+    taken: set[str] = set()
+    out = []
+    for group in sorted(dict.fromkeys(groups), key=len):  # one parameter for itself before one that shares
+        if not taken & set(group):
+            out.append(group)
+            taken |= set(group)
+    return out
+
+
+def refit(case: JointCase, effects: Sequence[str], law: np.ndarray, scale: float, iterations: int = FULL) -> Selection:
+    """The law with these effects fitted from a start, and its scores on validation windows.
+
+    Args:
+        case: the joint.
+        effects: names of the catalogue.
+        law: the start, shape (len(LAW),).
+        scale: robust scale of the residual [rad].
+        iterations: of Gauss–Newton.
+    """
+    coordinates = free_coordinates(groups_of(case, effects), law, sizes_of(case.scales))
+    fitted = fit_law(case.fit, law, coordinates, scale=scale, iterations=iterations)
+    return Selection(tuple(effects), fitted, block_scores(case.validation, fitted.law, case.floor))
+
+
+def starts_with(case: JointCase, selected: Selection, name: str) -> list[np.ndarray]:
+    """Laws from which a fit with one more effect starts, each of shape (len(LAW),)."""
+    effect = servo_effect(name)
+    out = []
+    for start in effect.starts(replace(case.scales, kp=float(selected.law[0]))):
+        out.append(effect.apply(selected.law, dict(zip([p.name for p in effect.parameters], start, strict=True))))
+    return out
+
+
+def without(case: JointCase, selected: Selection, name: str, scale: float) -> Selection:
+    """The selection without one effect: its parameters nominal, the others refitted."""
+    kept = tuple(e for e in selected.effects if e != name)
+    law, free = selected.law.copy(), {p for g in groups_of(case, kept) for p in g}
+    for group in groups_of(case, (name,)):
+        for parameter in set(group) - free:
+            law[NAMES.index(parameter)] = case.law[NAMES.index(parameter)]
+    return refit(case, kept, law, scale)
