@@ -1,8 +1,8 @@
-"""Bodies that masses can have in the place of the ridge's: the same data, drawn to the modelled links by entropy.
+"""argmin_Δπ χ²(Δπ) + w D(π + Δπ ‖ π₀) over positive definite pseudo-inertias: physically consistent bodies.
 
-With all else refitted around them, the data's cost of a change of bodies is quadratic. To it comes at most one nat for
-each unit of log-determinant divergence from the modelled links made rounder, over positive definite pseudo-inertias:
-what the recordings leave open stays as modelled. Source: Wensing 2018, Lee 2020.
+χ² is the quadratic cost of a change of bodies with all other unknowns refitted, D the log-determinant divergence from
+the modelled links made rounder, w at most one nat a unit: directions that the recordings leave open stay as modelled.
+Source: Wensing 2018, Lee 2020.
 """
 
 from __future__ import annotations
@@ -12,29 +12,31 @@ from collections.abc import Sequence
 import numpy as np
 
 from lagnet.diagnosis.identified.design import BODY, Design
-from lagnet.diagnosis.identified.evidence import Sums
+from lagnet.diagnosis.identified.evidence import JointEquations
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
-NATS = (1.0, 0.1, 0.01, 0.001)  # per unit of divergence from the modelled links: the first that fits
+NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: the first whose bodies fit
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
-RADIUS = 0.1  # of the ball that stands for such a link [m]
-WORSE = 1.5  # times the squared error of free parameters at a joint: beyond, no bodies are what is missing
+RADIUS = 0.1  # [m] of the ball that replaces such a link
+WORSE = 1.5  # largest squared error of a joint over that of unconstrained parameters: beyond, bodies are not the cause
 
 
 def consistent_unknowns(
-    design: Design, sums: Sequence[Sums], choice: Choice, modelled: np.ndarray
+    design: Design, sums: Sequence[JointEquations], choice: Choice, modelled: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Unknowns (scaled) whose bodies are physically consistent, or those of the ridge where such fit clearly worse.
-
-    With them the change of the bodies, shape (dof, 10): it has parameters too that the motion does not show.
+    """Scaled unknowns with physically consistent bodies, or those of the ridge where consistent ones fit far worse.
 
     Args:
         design: the equations.
         sums: their normal equations.
         choice: the ridge's solution.
-        modelled: shape (dof, 10), parameters of the links that are changed.
+        modelled: shape (dof, 10), parameters π of the links that are changed.
+
+    Returns:
+        The unknowns, shape (n_unknowns,), and Δπ, shape (dof, 10), which also has parameters that the motion does not
+        excite.
     """
     limit = WORSE * _errors(design, sums, choice.ridge.x)
     for weight in NATS:
@@ -48,34 +50,34 @@ def consistent_unknowns(
     return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
 
 
-def _errors(design: Design, sums: Sequence[Sums], x: np.ndarray) -> np.ndarray:
+def _errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:
     return np.array([s.error(x[j.unknowns]) for s, j in zip(sums, design.joints, strict=True)])
 
 
 def _constrained(
-    design: Design, sums: Sequence[Sums], choice: Choice, modelled: np.ndarray, weight: float
+    design: Design, sums: Sequence[JointEquations], choice: Choice, modelled: np.ndarray, weight: float
 ) -> tuple[np.ndarray, np.ndarray]:
     n, nb, ridge = design.n_unknowns, design.n_bodies, choice.ridge
     gram, moment = np.zeros((n, n)), np.zeros(n)
-    for s, joint, power in zip(sums, design.joints, ridge.variance * choice.temper, strict=True):
+    for s, joint, power in zip(sums, design.joints, ridge.variance * choice.inefficiency, strict=True):
         gram[np.ix_(joint.unknowns, joint.unknowns)] += s.gram / power
         moment[joint.unknowns] += s.moment / power
-    bodies, rest = slice(0, nb), slice(nb, n)
-    own = gram[rest, rest] + np.diag(ridge.precision[rest])
-    around = np.linalg.solve(own, np.column_stack([gram[rest, bodies], moment[rest]]))
+    bodies, others = slice(0, nb), slice(nb, n)
+    inner = gram[others, others] + np.diag(ridge.precision[others])
+    refitted = np.linalg.solve(inner, np.column_stack([gram[others, bodies], moment[others]]))
     scale = design.scale[:nb]
-    schur = (gram[bodies, bodies] - gram[bodies, rest] @ around[:, :-1]) * scale[:, None] * scale
-    wanted = (moment[bodies] - gram[bodies, rest] @ around[:, -1]) * scale
+    schur = (gram[bodies, bodies] - gram[bodies, others] @ refitted[:, :-1]) * scale[:, None] * scale
+    reduced = (moment[bodies] - gram[bodies, others] @ refitted[:, -1]) * scale
     schur = 0.5 * (schur + schur.T)
-    found = fit_consistent(schur, wanted + schur @ modelled.ravel(), rounded(modelled), weight=weight)
+    found = fit_consistent(schur, reduced + schur @ modelled.ravel(), rounded(modelled), weight=weight)
     change = (found - modelled).ravel() * scale
-    return np.concatenate([change, around[:, -1] - around[:, :-1] @ change]), found - modelled
+    return np.concatenate([change, refitted[:, -1] - refitted[:, :-1] @ change]), found - modelled
 
 
 def rounded(modelled: np.ndarray) -> np.ndarray:
-    """Links made rounder, and balls for those that the model has no mass for, shape (k, 10): all of them consistent.
+    """π₀, shape (k, 10): links with Σ + ⅓ tr Σ 1 for their second moment Σ, balls for links without mass.
 
-    Models know the mass of a link better than its shape.
+    All are physically consistent. Models know the mass of a link better than its shape.
     """
     positive = modelled[modelled[:, 0] > 0, 0]
     lightest = LIGHTEST * float(positive.mean()) if positive.size else 1.0

@@ -1,4 +1,4 @@
-"""The linear system of the identified layer: filtered columns of all joints over one vector of unknowns."""
+"""F [Y Φ] x = F r, the linear system of the identified layer: filtered columns of all joints over one vector x."""
 
 from __future__ import annotations
 
@@ -14,15 +14,20 @@ from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.types import Trajectory
 
 BODY = 10  # inertial parameters of a link
-RESTING = 0.01  # of a joint's usual largest speed
-SILENT = 1e-9  # of the largest column: what is smaller is rounding
+RESTING = 0.01  # of a joint's usual largest speed: below, it is at rest
+ROUNDING = 1e-9  # of the largest column: a smaller one is zero
 
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Unknowns that share one prior width: their places in the vector of unknowns; `free` have none.
+    """Unknowns with one prior variance.
 
-    `joint` is the one whose own they are, `pair` those that they tie; both are None for the bodies.
+    Args:
+        name: of the functions of motion, "bodies" for inertial parameters.
+        unknowns: shape (k,), their indices in x.
+        free: whether they have no prior.
+        joint: the joint whose functions they weight; None for bodies and pairs.
+        pair: the two joints that they couple; None for all others.
     """
 
     name: str
@@ -38,9 +43,9 @@ class JointRows:
 
     Args:
         columns: shape (n, p), scaled to unit size.
-        target: shape (n,), torque that the named model lacks [N m].
-        valid: shape (n,), False where the joint rests and dry friction may take any value.
-        unknowns: shape (p,), which of the unknowns the columns belong to.
+        target: shape (n,), residual of the named model [N m].
+        valid: shape (n,), False where the joint is at rest and dry friction may take any value.
+        unknowns: shape (p,), index in x of each column.
     """
 
     columns: np.ndarray
@@ -54,11 +59,11 @@ class Design:
     """All joints' equations.
 
     Args:
-        joints: one entry a joint.
+        joints: equations of each joint.
         groups: unknowns by their prior; bodies first.
         terms: functions of motion in the order of their unknowns, after the bodies'.
         n_bodies: number of unknowns that are inertial parameters.
-        scale: shape (n_unknowns,), by which columns were divided; 0 for a column without content.
+        scale: shape (n_unknowns,), by which columns were divided; 0 for a column of zeros.
         piece: shape (n,), index of the piece of motion of each row.
     """
 
@@ -75,19 +80,26 @@ class Design:
         return self.scale.size
 
     def without(self, unknowns: np.ndarray) -> Design:
-        """The same equations with some unknowns at zero."""
+        """The same equations with some unknowns fixed at zero."""
         scale = self.scale.copy()
         scale[unknowns] = 0.0
         return replace(self, joints=tuple(_scaled(j, np.where(scale > 0, 1.0, 0.0)) for j in self.joints), scale=scale)
 
     def unscaled(self, x: np.ndarray) -> np.ndarray:
-        """Unknowns in SI units from those of scaled columns; zero where a column has no content."""
+        """Unknowns in SI units from those of scaled columns; zero for a column of zeros."""
         return np.where(self.scale > 0, x / np.where(self.scale > 0, self.scale, 1.0), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
-    """A piece of fitted motion: its regressor (None without bodies), torque of the bodies and what is to explain."""
+class FitSegment:
+    """A segment of fitted motion.
+
+    Args:
+        piece: the segment.
+        regressor: Y, shape (n, dof, 10 dof); None without bodies.
+        load: shape (n, dof), torque of the bodies as far as known [N m].
+        target: shape (n, dof), residual of the named model [N m].
+    """
 
     piece: Segment
     regressor: np.ndarray | None
@@ -95,25 +107,25 @@ class Seen:
     target: Trajectory
 
 
-def make_design(problem: Problem, seen: Sequence[Seen], groups: Sequence[TermGroup]) -> Design:
+def make_design(problem: Problem, segments: Sequence[FitSegment], groups: Sequence[TermGroup]) -> Design:
     """Columns of the bodies and of the groups' functions at every joint.
 
     Args:
         problem: gives filter and motion.
-        seen: the pieces that are fitted.
+        segments: those that are fitted.
         groups: functions of motion.
     """
     terms = tuple(t for g in groups for t in g.terms)
-    n_bodies = BODY * problem.n_dof if seen[0].regressor is not None else 0
-    rows = [_joint_rows(problem, seen, j, terms, n_bodies) for j in range(problem.n_dof)]
+    n_bodies = BODY * problem.n_dof if segments[0].regressor is not None else 0
+    rows = [_joint_rows(problem, segments, j, terms, n_bodies) for j in range(problem.n_dof)]
     scale = _scales(problem, rows, n_bodies + len(terms))
     joints = tuple(_scaled(r, scale) for r in rows)
-    piece = np.concatenate([np.full(s.piece.keep.size, i) for i, s in enumerate(seen)])
+    piece = np.concatenate([np.full(s.piece.keep.size, i) for i, s in enumerate(segments)])
     return Design(joints, _groups(groups, n_bodies), terms, n_bodies, scale, piece)
 
 
 def usual_rest(problem: Problem) -> Rest:
-    """Joints rest below a hundredth of their usual largest speed, and bristles stay bent unless recordings deny it."""
+    """Rest below a hundredth of the usual largest speed; all of the bristles' torque stays until it is estimated."""
     speed = np.quantile(np.abs(np.concatenate([p.v for p in problem.fit])), USUAL, axis=0)
     return Rest(np.minimum(problem.slow, RESTING * speed), np.ones(problem.n_dof))
 
@@ -128,28 +140,28 @@ def _groups(groups: Sequence[TermGroup], n_bodies: int) -> tuple[Group, ...]:
 
 
 def _joint_rows(
-    problem: Problem, seen: Sequence[Seen], joint: int, terms: Sequence[MotionTerm], n_bodies: int
+    problem: Problem, segments: Sequence[FitSegment], joint: int, terms: Sequence[MotionTerm], n_bodies: int
 ) -> JointRows:
     own, rest = [i for i, t in enumerate(terms) if joint in t.rows], usual_rest(problem)
-    links = np.arange(BODY * joint, n_bodies)  # links before the joint do not load it
+    links = np.arange(BODY * joint, n_bodies)  # links before a joint have no torque at it
     columns = []
-    for s in seen:
+    for s in segments:
         motion: Any = s.piece.motion(problem)
         parts = [] if s.regressor is None else [s.regressor[:, joint, links]]
         parts += [terms[i].at(joint, motion, s.load, rest)[:, None] for i in own]
         columns.append(problem.reduce(s.piece, np.hstack(parts)))
-    target = np.concatenate([problem.reduce(s.piece, s.target[:, [joint]])[:, 0] for s in seen])
-    valid = np.concatenate([s.piece.counts[:, joint] for s in seen])
+    target = np.concatenate([problem.reduce(s.piece, s.target[:, [joint]])[:, 0] for s in segments])
+    valid = np.concatenate([s.piece.counts[:, joint] for s in segments])
     return JointRows(np.vstack(columns), target, valid, np.concatenate([links, n_bodies + np.array(own)]).astype(int))
 
 
 def _scales(problem: Problem, rows: Sequence[JointRows], n: int) -> np.ndarray:
-    """Largest root mean square of each column over the joints, in parts of the joint's torque, shape (n,)."""
+    """max_j rms(column) / σ_τj of each column over the joints, shape (n,)."""
     scale = np.zeros(n)
     for joint, r in enumerate(rows):
         size = np.sqrt(np.mean(r.columns[r.valid] ** 2, axis=0)) if r.valid.any() else np.zeros(r.unknowns.size)
         scale[r.unknowns] = np.maximum(scale[r.unknowns], size / max(float(problem.scale[joint]), 1e-12))
-    return np.where(scale > SILENT * scale.max(initial=0.0), scale, 0.0)
+    return np.where(scale > ROUNDING * scale.max(initial=0.0), scale, 0.0)
 
 
 def _scaled(rows: JointRows, scale: np.ndarray) -> JointRows:

@@ -1,4 +1,4 @@
-"""Which functions of motion the identified layer weighs at each joint, and their natural scales on given recordings."""
+"""Φ(q, v, a), the functions of motion of the identified layer at each joint, with scales from the recordings."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ import numpy as np
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.models.corrected.motion_terms import BENDS, MotionTerm
 
-CORE = ("viscous", "dry", "offset", "rotor")  # plain least squares has them: never drawn to zero
+CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
 USUAL = 0.98  # quantile of |v| taken for the usual largest speed
 
 
 @dataclass(frozen=True)
 class TermGroup:
-    """Functions of motion whose weights share one prior width.
+    """Functions of motion whose weights have one prior variance.
 
     Args:
-        name: for reading.
+        name: of the group.
         terms: the functions.
-        free: drawn to zero by nothing but rounding.
-        needs_load: of the torque of the bodies, which must be known first.
-        pair: the joints that it ties; it is asked for only where unseen motion is explained far better with it.
+        free: whether the weights have no prior.
+        needs_load: whether they are functions of the torque of the bodies, which must be estimated first.
+        pair: the joints that it couples; it is used only where it predicts held-out motion far better.
     """
 
     name: str
@@ -34,7 +34,7 @@ class TermGroup:
 
     @property
     def joint(self) -> int | None:
-        """The joint whose own they are; None for those of a pair."""
+        """The joint of the functions; None for those of a pair."""
         return self.terms[0].joint if self.pair is None else None
 
 
@@ -57,7 +57,7 @@ def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:
 
 
 def _of_pair(first: int, second: int) -> list[TermGroup]:
-    """What turns with both of two neighbouring joints: drag and rotor of a coupled motor, at any ratio."""
+    """Friction and rotor of a motor that is coupled to two neighbouring joints, at any ratio."""
     smooth = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_viscous", "cross_inertia"))
     dry = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_dry_sum", "cross_dry_difference"))
     return [TermGroup("tie", smooth, pair=(first, second)), TermGroup("tie", dry, pair=(first, second))]

@@ -1,8 +1,8 @@
-"""Ridge regression of all joints together, with prior widths of groups and noise of joints set by the evidence.
+"""argmax p(x | α, σ²) with α, σ² at the maximum of the evidence: ridge regression of all joints together.
 
 With unknowns x ~ N(0, 1/α_g) and errors of joint j ~ N(0, s σ_j²), the fixed point of MacKay 1992 sets α_g to
-γ_g / |x_g|², γ_g the number of unknowns that the data determine, and σ_j² to the mean squared error. The temper s says
-that errors of filtered motion hang together: s samples count as one.
+γ_g / |x_g|², γ_g the number of unknowns that the data determine, and σ_j² to the mean squared error. The statistical
+inefficiency s accounts for errors of filtered motion, which are correlated: s samples have the information of one.
 """
 
 from __future__ import annotations
@@ -16,41 +16,44 @@ from scipy.linalg import cho_factor, cho_solve
 from lagnet.diagnosis.identified.design import Design, Group
 
 STEPS = 30  # of the fixed point
-WIDEST, NARROWEST = 1e-6, 1e8  # least and largest α: columns are in parts of the joint's torque
-FREE = 1e-8  # α of what nothing draws to zero
-START = 1e-4  # α at first
-BARRED = 1e14  # α of what is left out
+LEAST_PRECISION, MOST_PRECISION = 1e-6, 1e8  # α: columns are in parts of the joint's torque
+FREE = 1e-8  # α of unknowns without a prior
+START = 1e-4  # initial α
+EXCLUDED = 1e14  # α of unknowns that are excluded
 ROUNDING = 1e-10  # of the mean diagonal
 LEAST_ERROR = 1e-12  # of the power of the target
 
 
 @dataclass(frozen=True, eq=False)
-class Sums:
-    """Normal equations of one joint: shape (p, p), (p,), power of the target and number of samples."""
+class JointEquations:
+    """AᵀA x = Aᵀy of one joint: gram (p, p), moment (p,), power |y|² and number of samples."""
 
     gram: np.ndarray
     moment: np.ndarray
     power: float
-    count: float
+    n_samples: float
 
-    def __sub__(self, other: Sums) -> Sums:
-        return Sums(
-            self.gram - other.gram, self.moment - other.moment, self.power - other.power, self.count - other.count
+    def __sub__(self, other: JointEquations) -> JointEquations:
+        return JointEquations(
+            self.gram - other.gram,
+            self.moment - other.moment,
+            self.power - other.power,
+            self.n_samples - other.n_samples,
         )
 
     def error(self, x: np.ndarray) -> float:
-        """Squared error of unknowns, at least rounding."""
+        """|y − A x|², at least rounding."""
         return max(self.power - 2.0 * float(x @ self.moment) + float(x @ self.gram @ x), LEAST_ERROR * self.power)
 
 
 @dataclass(frozen=True, eq=False)
 class Ridge:
-    """Outcome of a fit.
+    """Posterior mean and covariance of the unknowns.
 
     Args:
         x: shape (n_unknowns,), scaled unknowns.
-        covariance: shape (n_unknowns, n_unknowns), of their posterior.
-        variance: shape (dof,), squared error of each joint [N² m²].
+        covariance: shape (n_unknowns, n_unknowns).
+        variance: shape (dof,), σ_j² of each joint [N² m²].
         precision: shape (n_unknowns,), α of each unknown.
     """
 
@@ -60,54 +63,54 @@ class Ridge:
     precision: np.ndarray
 
 
-def sums_of(design: Design, rows: np.ndarray | slice = slice(None)) -> tuple[Sums, ...]:
-    """Normal equations of each joint over some rows, samples at rest left out."""
+def joint_equations(design: Design, rows: np.ndarray | slice = slice(None)) -> tuple[JointEquations, ...]:
+    """Normal equations of each joint over some rows, without samples at rest."""
     out = []
     for joint in design.joints:
         keep = joint.valid[rows]
         a, y = joint.columns[rows][keep], joint.target[rows][keep]
-        out.append(Sums(a.T @ a, a.T @ y, float(y @ y), float(keep.sum())))
+        out.append(JointEquations(a.T @ a, a.T @ y, float(y @ y), float(keep.sum())))
     return tuple(out)
 
 
 def fit_ridge(
     design: Design,
-    sums: Sequence[Sums],
-    temper: float,
+    sums: Sequence[JointEquations],
+    inefficiency: float,
     start: Ridge | None = None,
     steps: int = STEPS,
-    barred: frozenset[int] = frozenset(),
+    excluded: frozenset[int] = frozenset(),
 ) -> Ridge:
-    """Unknowns with the prior widths and noise that the evidence prefers.
+    """The fixed point of x, α and σ².
 
     Args:
-        design: where unknowns belong.
+        design: the equations.
         sums: normal equations of each joint.
-        temper: samples that count as one.
-        start: a fit whose widths and noise are begun with.
+        inefficiency: s, samples with the information of one.
+        start: a fit whose α and σ² are the initial ones.
         steps: of the fixed point.
-        barred: indices of groups that are left out.
+        excluded: indices of groups that are fixed at zero.
     """
-    counts = np.array([max(s.count, 1.0) for s in sums])
-    power = np.array([max(s.power, 1e-300) for s in sums]) / counts
+    n_samples = np.array([max(s.n_samples, 1.0) for s in sums])
+    power = np.array([max(s.power, 1e-300) for s in sums]) / n_samples
     variance = 0.1 * power if start is None else start.variance
-    precision = np.full(design.n_unknowns, START) if start is None else np.minimum(start.precision, NARROWEST)
-    out = np.concatenate([np.zeros(0, dtype=int), *(design.groups[i].unknowns for i in sorted(barred))])
+    precision = np.full(design.n_unknowns, START) if start is None else np.minimum(start.precision, MOST_PRECISION)
+    out = np.concatenate([np.zeros(0, dtype=int), *(design.groups[i].unknowns for i in sorted(excluded))])
     for _ in range(steps):
-        precision[out] = BARRED
-        x, covariance = _solve(design, sums, precision, temper * variance)
+        precision[out] = EXCLUDED
+        x, covariance = _solve(design, sums, precision, inefficiency * variance)
         precision = _precisions(design.groups, design.scale, x, np.diag(covariance), precision)
         errors = np.array([s.error(x[j.unknowns]) for s, j in zip(sums, design.joints, strict=True)])
-        variance = np.maximum(errors / counts, LEAST_ERROR * power)
-    precision[out] = BARRED
-    x, covariance = _solve(design, sums, precision, temper * variance)
+        variance = np.maximum(errors / n_samples, LEAST_ERROR * power)
+    precision[out] = EXCLUDED
+    x, covariance = _solve(design, sums, precision, inefficiency * variance)
     return Ridge(x, covariance, variance, precision)
 
 
 def _solve(
-    design: Design, sums: Sequence[Sums], precision: np.ndarray, noise: np.ndarray
+    design: Design, sums: Sequence[JointEquations], precision: np.ndarray, noise: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and covariance of the unknowns for given widths and noise."""
+    """Posterior mean and covariance of x for given α and noise variances."""
     n = design.n_unknowns
     gram, moment = np.zeros((n, n)), np.zeros(n)
     for s, joint, power in zip(sums, design.joints, noise, strict=True):
@@ -128,5 +131,7 @@ def _precisions(
             out[own] = FREE
         elif own.size:
             determined = own.size - float(before[own] @ spread[own])
-            out[own] = np.clip(max(determined, 1e-3) / max(float(x[own] @ x[own]), 1e-14), WIDEST, NARROWEST)
+            out[own] = np.clip(
+                max(determined, 1e-3) / max(float(x[own] @ x[own]), 1e-14), LEAST_PRECISION, MOST_PRECISION
+            )
     return out

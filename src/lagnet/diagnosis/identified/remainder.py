@@ -1,7 +1,7 @@
-"""Trains ε on what mechanics leaves, and uses it at a joint as far as blocks that it has not seen gain.
+"""ε(q, v, a) ≈ r, the residual of the mechanics: trained in stages, used at a joint as far as held-out blocks gain.
 
-Mechanics is fixed: ε is a plain regression on its residual, so that it can take nothing that mechanics gives
-(staged training). Source: Wu 2024.
+The mechanics are fixed: ε is a plain regression on their residual, so that it cannot replace mechanics.
+Source: Wu 2024.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class RemainderSettings:
         rate: of learning.
         decay: of weights.
         folds: contiguous blocks that are left out in turn.
-        gain: share of a joint's unseen error that ε must take off to be used there.
-        most: samples that are learned from.
-        anchors: samples that say how far the training motion reaches.
+        gain: least reduction of a joint's held-out squared error by ε, as a share, to be used there.
+        most: training samples.
+        anchors: samples that describe the extent of the training motion.
     """
 
     members: int = 3
@@ -53,7 +53,7 @@ class RemainderSettings:
 def learn_remainder(
     problem: Problem, model: CorrectedModel, seed: int, settings: RemainderSettings | None = None
 ) -> LearnedRemainder | None:
-    """ε on the fitted recordings; None where no joint's unseen blocks gain from it.
+    """ε of the fitted recordings; None where no joint's held-out blocks gain from it.
 
     Args:
         problem: the diagnosis' problem.
@@ -62,17 +62,17 @@ def learn_remainder(
         settings: size and training.
     """
     settings = settings or RemainderSettings()
-    x, y, keep = _samples(problem, model, spread_evenly(problem.fit, 30 * settings.most), settings.most)
+    x, y, valid = _samples(problem, model, spread_evenly(problem.fit, 30 * settings.most), settings.most)
     centre, spread = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-9)
     x, size = (
         (x - centre) / spread,
-        np.maximum(np.sqrt(np.sum(y**2 * keep, axis=0) / np.maximum(keep.sum(0), 1)), 1e-12),
+        np.maximum(np.sqrt(np.sum(y**2 * valid, axis=0) / np.maximum(valid.sum(0), 1)), 1e-12),
     )
     target = y / size
-    share = _shares(x, target, keep, seed, settings)
+    share = _shares(x, target, valid, seed, settings)
     if not share.any():
         return None
-    weights, biases = _train(x, target, keep, seed, settings)
+    weights, biases = _train(x, target, valid, seed, settings)
     weights[-1], biases[-1] = weights[-1] * size, biases[-1] * size
     rows = np.unique(np.linspace(0, len(x) - 1, settings.anchors).round().astype(int))
     return LearnedRemainder(centre, spread, tuple(weights), tuple(biases), share, x[rows], _reach(x, x[rows]))
@@ -81,34 +81,34 @@ def learn_remainder(
 def _samples(
     problem: Problem, model: CorrectedModel, pieces: Sequence[Segment], most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Features, residual torque and which count, at samples kept of the fitted motion, in the order of time."""
-    xs, ys, keeps = [], [], []
+    """Features, residual torque and mask of valid samples of the fitted motion, in the order of time."""
+    xs, ys, masks = [], [], []
     for p in pieces:
-        left = problem.reduce(p, p.tau - model.torque_along(p.time, p.q, p.v, p.a))
+        residual = problem.reduce(p, p.tau - model.torque_along(p.time, p.q, p.v, p.a))
         xs.append(features(p.q[p.keep], p.v[p.keep], p.a[p.keep]))
-        ys.append(left)
-        keeps.append(p.counts)
+        ys.append(residual)
+        masks.append(p.counts)
     every = max(1, sum(map(len, xs)) // most)
-    x, y, keep = (np.concatenate(parts)[::every] for parts in (xs, ys, keeps))
-    return x, y, keep.astype(float)
+    x, y, valid = (np.concatenate(parts)[::every] for parts in (xs, ys, masks))
+    return x, y, valid.astype(float)
 
 
-def _shares(x: np.ndarray, y: np.ndarray, keep: np.ndarray, seed: int, settings: RemainderSettings) -> np.ndarray:
-    """Share of ε that predicts unseen blocks best, joint by joint; 0 where it gains too little in any half of them."""
+def _shares(x: np.ndarray, y: np.ndarray, valid: np.ndarray, seed: int, settings: RemainderSettings) -> np.ndarray:
+    """argmin_s |y − s ε|² on held-out blocks, shape (dof,); 0 where the gain is small or in half of the blocks only."""
     edges = np.linspace(0, len(x), settings.folds + 1).round().astype(int)
     product, power, before = np.zeros((3, settings.folds, y.shape[1]))
     for k in range(settings.folds):
-        judged = np.zeros(len(x), dtype=bool)
-        judged[edges[k] : edges[k + 1]] = True
-        weights, biases = _train(x, y, keep * ~judged[:, None], seed, settings)
-        guess = _mean(weights, biases, x[judged])
-        product[k] = np.sum(guess * y[judged] * keep[judged], axis=0)
-        power[k] = np.sum(guess**2 * keep[judged], axis=0)
-        before[k] = np.sum(y[judged] ** 2 * keep[judged], axis=0)
+        held_out = np.zeros(len(x), dtype=bool)
+        held_out[edges[k] : edges[k + 1]] = True
+        weights, biases = _train(x, y, valid * ~held_out[:, None], seed, settings)
+        guess = _mean(weights, biases, x[held_out])
+        product[k] = np.sum(guess * y[held_out] * valid[held_out], axis=0)
+        power[k] = np.sum(guess**2 * valid[held_out], axis=0)
+        before[k] = np.sum(y[held_out] ** 2 * valid[held_out], axis=0)
     share = np.clip(product.sum(0) / np.maximum(power.sum(0), 1e-300), 0.0, 1.0)
-    taken = 2.0 * share * product - share**2 * power
-    worth = (taken.sum(0) > settings.gain * before.sum(0)) & (np.sum(taken > 0, axis=0) > settings.folds / 2)
-    return np.where(worth, share, 0.0)
+    gain = 2.0 * share * product - share**2 * power
+    useful = (gain.sum(0) > settings.gain * before.sum(0)) & (np.sum(gain > 0, axis=0) > settings.folds / 2)
+    return np.where(useful, share, 0.0)
 
 
 def _mean(weights: list[np.ndarray], biases: list[np.ndarray], x: np.ndarray) -> np.ndarray:
@@ -121,7 +121,7 @@ def _mean(weights: list[np.ndarray], biases: list[np.ndarray], x: np.ndarray) ->
 
 
 def _train(
-    x: np.ndarray, y: np.ndarray, keep: np.ndarray, seed: int, settings: RemainderSettings
+    x: np.ndarray, y: np.ndarray, valid: np.ndarray, seed: int, settings: RemainderSettings
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Weights and biases of all members, each of shape (members, ...)."""
     sizes = (x.shape[1], settings.hidden, settings.hidden, y.shape[1])
@@ -132,14 +132,14 @@ def _train(
     ]
     weights[-1] = np.float32(0.1) * weights[-1]
     biases = [jnp.zeros((settings.members, m), jnp.float32) for m in sizes[1:]]
-    x32, y32, keep32 = (jnp.asarray(z, jnp.float32) for z in (x, y, keep))
-    trained = _descend((weights, biases), x32, y32, keep32, settings)
+    x32, y32, valid32 = (jnp.asarray(z, jnp.float32) for z in (x, y, valid))
+    trained = _descend((weights, biases), x32, y32, valid32, settings)
     return [np.asarray(w, dtype=float) for w in trained[0]], [np.asarray(b, dtype=float) for b in trained[1]]
 
 
 @eqx.filter_jit
 def _descend(
-    start: tuple[list[Array], list[Array]], x: Array, y: Array, keep: Array, settings: RemainderSettings
+    start: tuple[list[Array], list[Array]], x: Array, y: Array, valid: Array, settings: RemainderSettings
 ) -> tuple[list[Array], list[Array]]:
     optimiser = optax.adamw(optax.cosine_decay_schedule(settings.rate, settings.steps), weight_decay=settings.decay)
 
@@ -148,7 +148,7 @@ def _descend(
         for layer, (weight, bias) in enumerate(zip(*net, strict=True)):
             h = h @ weight + bias[:, None, :]
             h = h if layer == len(net[0]) - 1 else jnp.tanh(h)
-        return jnp.sum((h - y[None]) ** 2 * keep[None]) / jnp.sum(keep) / h.shape[0] * h.shape[2]
+        return jnp.sum((h - y[None]) ** 2 * valid[None]) / jnp.sum(valid) / h.shape[0] * h.shape[2]
 
     def step(carry, _):
         net, state = carry
@@ -160,7 +160,7 @@ def _descend(
 
 
 def _reach(x: np.ndarray, anchors: np.ndarray) -> float:
-    """Distance within which nearly all training samples have an anchor."""
+    """99 % quantile of the distance of a training sample to its nearest anchor."""
     rows = x[:: max(1, len(x) // 1000)]
     distance = np.sum(rows**2, axis=1)[:, None] - 2.0 * rows @ anchors.T + np.sum(anchors**2, axis=1)
     return max(float(np.quantile(np.sqrt(np.maximum(distance.min(axis=1), 0.0)), 0.99)), 0.1 * np.sqrt(x.shape[1]))

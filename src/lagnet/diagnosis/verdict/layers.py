@@ -1,4 +1,4 @@
-"""Adds the layers of the correction to a verdict: what each leaves of held-out torque, and what was identified."""
+"""Adds the layers of the correction to a verdict: their nMSE on held-out torque, and the identified parameters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.identified.fit import Identified
-from lagnet.diagnosis.identified.told import identified_as_json
+from lagnet.diagnosis.identified.verdict_entry import identified_as_json
 from lagnet.diagnosis.verdict.verdict import JointFit, Verdict
 from lagnet.diagnosis.verdict.wording import whole_error_words
 from lagnet.models.corrected.model import CorrectedModel

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -55,7 +55,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
     write_whole(out / FILE, finite_json(text))
     further = None if model.identified is None else model.identified.bodies
     if isinstance(model.nominal, Robot) and are_consistent(model.nominal, model.effects, further):
-        write_description(model.bodies(), out / "robot")
+        write_description(cast(Robot, model.bodies()), out / "robot")
     return out
 
 

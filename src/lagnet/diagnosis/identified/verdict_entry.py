@@ -1,4 +1,4 @@
-"""The identified layer as values of a verdict: combinations of inertial parameters, friction curves, and words."""
+"""The `identified` entry of a verdict: combinations of inertial parameters, friction curves, and sentences."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from lagnet.diagnosis.identified.fit import Identified
 from lagnet.models.corrected.motion_terms import BENDS, MotionTerm, bend
 from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
 
-SURE = 1.96  # standard deviations of a 95 % interval
-NOTABLE = 0.02  # of a joint's torque: a smaller change is not worth a line
+NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
+NOTABLE = 0.02  # of a joint's torque: a smaller change is not reported
 SPEEDS = 20  # points of a friction curve in each direction, closer near rest, where it bends; rest itself is a jump
-NAMED_OPEN = 3  # combinations left open that a sentence names, each by its first parameter
+NAMED_OPEN = 3  # undetermined combinations that a sentence names, each by its first parameter
 UNITS = ("kg", *("kg m",) * 3, *("kg m²",) * 6)
 
 
 def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[str]) -> dict[str, Any]:
-    """What the recordings determine beside the named physics, whatever its cause.
+    """Parameters that the recordings determine beside the named physics, whatever their cause.
 
     Args:
         found: the layer with its equations; None where there is none.
@@ -28,45 +28,45 @@ def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[st
 
     Returns:
         `bodies` (combinations of inertial parameters that differ from the model, with 95 % intervals), `undetermined`
-        (combinations that the motion leaves open), `joints` (friction curve, rotor and offset of each), `ties`,
+        (combinations that the motion does not excite), `joints` (friction curve, rotor and offset of each), `ties`,
         `samples_that_count_as_one` and `words`.
     """
     if found is None:
         return {"bodies": [], "undetermined": [], "joints": [], "ties": [], "words": NOTHING}
-    bodies, open_ones = _bodies(found, robot) if found.design.n_bodies else ([], [])
+    bodies, undetermined = _bodies(found, robot) if found.design.n_bodies else ([], [])
     own = [entry for j, name in enumerate(joints) if (entry := _joint(found, j, name))]
     ties = _ties(found, joints)
-    words = _words(bodies, open_ones, own, ties)
-    told = {"bodies": bodies, "undetermined": open_ones, "joints": own, "ties": ties}
-    return {**told, "samples_that_count_as_one": found.choice.temper, "words": words}
+    words = _words(bodies, undetermined, own, ties)
+    entry = {"bodies": bodies, "undetermined": undetermined, "joints": own, "ties": ties}
+    return {**entry, "samples_that_count_as_one": found.choice.inefficiency, "words": words}
 
 
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
 
 
 def _bodies(found: Identified, robot: Any) -> tuple[list[dict[str, Any]], list[str]]:
-    """Base parameters that differ, strongest first, and those of which the recordings say nothing."""
+    """Base parameters that differ, largest torque first, and those that the motion does not excite."""
     base: BaseParameters = base_parameters(robot)
     scale = found.design.scale[: found.design.n_bodies]
     per_unit = np.where(scale > 0, 1.0 / np.where(scale > 0, scale, 1.0), 0.0)
     inner = found.choice.ridge.covariance[: scale.size, : scale.size] * per_unit[:, None] * per_unit
     change = base.of(np.zeros((scale.size // 10, 10)) if found.layer.bodies is None else found.layer.bodies)
     spread = np.sqrt(np.maximum(np.einsum("ri,ij,rj->r", base.combinations, inner, base.combinations), 0.0))
-    weight = scale[base.independent]  # torque per unit, in parts of the torque of the joint that feels it most
+    weight = scale[base.independent]  # torque per unit, over the torque of the joint where it is largest
     words = base.describe()
-    told = [
+    determined = [
         {
             "combination": words[k],
             "link": base.joints[int(base.independent[k]) // 10],
             "change": float(change[k]),
             "unit": UNITS[int(base.independent[k]) % 10],
-            "ci95": [float(change[k] - SURE * spread[k]), float(change[k] + SURE * spread[k])],
+            "ci95": [float(change[k] - NORMAL_95 * spread[k]), float(change[k] + NORMAL_95 * spread[k])],
             "share_of_torque": float(abs(change[k]) * weight[k]),
         }
         for k in np.argsort(-np.abs(change) * weight)
-        if abs(change[k]) > SURE * spread[k] and abs(change[k]) * weight[k] > NOTABLE
+        if abs(change[k]) > NORMAL_95 * spread[k] and abs(change[k]) * weight[k] > NOTABLE
     ]
-    return told, [words[k] for k in np.flatnonzero(weight <= 0)]
+    return determined, [words[k] for k in np.flatnonzero(weight <= 0)]
 
 
 def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
@@ -74,7 +74,7 @@ def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
     own = [(i, t) for i, t in enumerate(found.layer.terms) if t.joint == joint and t.other is None]
     entries = []
     for i, term in own:
-        weight, half = float(found.layer.weights[i]), SURE * _spread(found, term)
+        weight, half = float(found.layer.weights[i]), NORMAL_95 * _spread(found, term)
         if weight:
             entries.append(
                 {"term": term.kind, "scale": term.scale, "weight": weight, "ci95": [weight - half, weight + half]}
@@ -91,7 +91,7 @@ def _spread(found: Identified, term: MotionTerm) -> float:
 
 
 def _curve(found: Identified, joint: int) -> dict[str, list[float]]:
-    """Steady friction beside what is named, over speed, at no load [N m]."""
+    """Steady friction beside the named one over speed, without load [N m]."""
     pairs = zip(found.layer.terms, found.layer.weights, strict=True)
     terms = [(t, w) for t, w in pairs if t.joint == joint and t.other is None]
     top = max((t.scale for t, _ in terms if t.kind in BENDS), default=1.0)
@@ -115,7 +115,7 @@ def _ties(found: Identified, joints: Sequence[str]) -> list[dict[str, Any]]:
     ]
 
 
-def _words(bodies: list, open_ones: list, own: list, ties: list) -> str:
+def _words(bodies: list, undetermined: list, own: list, ties: list) -> str:
     """The layer in plain English."""
     parts = []
     links = list(dict.fromkeys(b["link"] for b in bodies))
@@ -127,9 +127,9 @@ def _words(bodies: list, open_ones: list, own: list, ties: list) -> str:
     if ties:
         tied = list(dict.fromkeys(" and ".join(t["joints"]) for t in ties))
         parts.append(f"The motors of {_listed(tied)} are coupled.")
-    if open_ones:
-        more = ", ".join(text.split(" ")[0] for text in open_ones[:NAMED_OPEN])
-        rest = f" and {len(open_ones) - NAMED_OPEN} more" if len(open_ones) > NAMED_OPEN else ""
+    if undetermined:
+        more = ", ".join(text.split(" ")[0] for text in undetermined[:NAMED_OPEN])
+        rest = f" and {len(undetermined) - NAMED_OPEN} more" if len(undetermined) > NAMED_OPEN else ""
         parts.append(
             f"This motion says nothing of {more}{rest}, alone or combined: faster motion of all joints at once would."
         )
