@@ -1,4 +1,4 @@
-"""A held-out motion with what is missing at every joint, small enough to play on a page."""
+"""|r_j(t)| / σ_τj along a held-out motion, nominal and corrected, in few enough frames to play on a page."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def arm_motion(
         model: whose bodies are drawn.
         time: shape (n,), of one unbroken motion [s].
         q: shape (n, dof) [rad].
-        residuals: torque that the nominal and the corrected model miss, each of shape (n, dof) [N m].
-        scale: shape (dof,), scatter of the measured torque [N m].
+        residuals: of the nominal and of the corrected model, each of shape (n, dof) [N m].
+        scale: shape (dof,), standard deviation of the measured torque [N m].
     """
     if time.size < 3 or not hasattr(model, "body_tree"):
         return None

@@ -1,4 +1,4 @@
-"""Collects the curves that a report draws: torque over time, residual against velocity, fitted laws, contests."""
+"""Collects the arrays that a report draws: torque over time, residual against velocity, laws, comparisons of rivals."""
 
 from __future__ import annotations
 
@@ -81,12 +81,12 @@ def _joint(
     held: Sequence[Recording],
     joint: int,
 ) -> JointEvidence:
-    problem, left = state.problem, state.remainders[joint]
+    problem, remainder = state.problem, state.remainders[joint]
     series = [
         (p.time[p.keep], *(problem.reduce(p, x)[:, joint] for x in (p.tau, p.load, c)))
         for p, c in zip(problem.holdout, corrected, strict=True)
     ]
-    time, measured, nominal, best = (np.concatenate(s) for s in zip(*series, strict=True))
+    time, measured, nominal, tau_corrected = (np.concatenate(s) for s in zip(*series, strict=True))
     edges = np.concatenate([[0], np.cumsum([len(s[0]) for s in series])])
     names = tuple(held[p.recording].path or f"recording {p.recording + 1}" for p in problem.holdout)
     v = np.concatenate([p.v[p.keep, joint] for p in problem.holdout])
@@ -97,32 +97,32 @@ def _joint(
             time,
             measured,
             nominal,
-            best,
+            tau_corrected,
             tuple((int(a), int(b)) for a, b in pairwise(edges)),
             names,
             None if full is None else np.concatenate([x[:, joint] for x in full]),
         ),
-        residual=ResidualByVelocity(v, measured - nominal, measured - best),
+        residual=ResidualByVelocity(v, measured - nominal, measured - tau_corrected),
         law=_law(state, joint),
         noise_rms=float(state.noise[joint]),
-        ceiling_share=left.ceiling.share if left.above else None,
-        leftover=left.shape,
+        ceiling_share=remainder.ceiling.share if remainder.above else None,
+        leftover=remainder.shape,
     )
 
 
 def _law(state: DiagnosisState, joint: int) -> FrictionLaw | None:
-    """The named effects of speed at a joint as one curve."""
+    """r(v) = Σ_k r_k(v), the named effects of a joint that are functions of its speed; None without one."""
     problem = state.problem
     own = [e for e in state.refit.effects if e.joint == joint and effect_named(e.effect).function_of_speed]
     if not own:
         return None
-    fastest = max(float(np.max(np.abs(p.v[:, joint]))) for p in problem.fit)
-    v = np.linspace(-fastest, fastest, CURVE)
-    rest = np.zeros((CURVE, problem.n_dof))
-    speeds = rest.copy()
+    highest = max(float(np.max(np.abs(p.v[:, joint]))) for p in problem.fit)
+    v = np.linspace(-highest, highest, CURVE)
+    zero = np.zeros((CURVE, problem.n_dof))
+    speeds = zero.copy()
     speeds[:, joint] = v
     motion = Motion(
-        np.arange(CURVE) * 1e-2, rest, speeds, rest, rest, problem.slow, problem.nominal, straight=problem.straight
+        np.arange(CURVE) * 1e-2, zero, speeds, zero, zero, problem.slow, problem.nominal, straight=problem.straight
     )
     torque = sum((effect_named(e.effect).torque(motion, joint, e.values) for e in own), np.zeros(CURVE))
     return FrictionLaw(tuple(e.effect for e in own), v, torque)
@@ -147,12 +147,12 @@ def _skeleton(problem: Problem) -> Skeleton | None:
 
 
 def _motion(problem: Problem, corrected: list[np.ndarray]) -> ArmMotion | None:
-    """The longest held-out motion, to play."""
+    """The longest held-out motion with its residuals."""
     index = int(np.argmax([len(p.time[p.keep]) for p in problem.holdout]))
     piece = problem.holdout[index]
-    tau, nominal, best = (problem.reduce(piece, x) for x in (piece.tau, piece.load, corrected[index]))
+    tau, nominal, tau_corrected = (problem.reduce(piece, x) for x in (piece.tau, piece.load, corrected[index]))
     scale = np.maximum(np.std(np.concatenate([problem.reduce(p, p.tau) for p in problem.holdout]), axis=0), 1e-12)
-    residuals = tau - nominal, tau - best
+    residuals = tau - nominal, tau - tau_corrected
     return arm_motion(problem.nominal, piece.time[piece.keep], piece.q[piece.keep], residuals, scale)
 
 

@@ -1,4 +1,4 @@
-"""Puts what an inquiry found into a verdict."""
+"""Composes the verdict from the state of a diagnosis: mismatch, effects, remainder, errors and abstentions."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Seque
 
 
 def _rejected(state: DiagnosisState, named: Sequence[EffectFound]) -> tuple[Rejected, ...]:
-    """What was considered and not named, the last reason for each; nothing that is named after all."""
+    """Effects that were considered and not named, each with its last rejection; none that is named in the end."""
     last = {(r.effect, r.joint): r for r in state.rejected}
     rows = ((r, None if r.joint is None else state.problem.joints[r.joint]) for r in last.values())
     places = {(e.effect, e.joint) for e in named}
@@ -96,7 +96,7 @@ def is_prismatic(problem: Problem, joint: int | None) -> bool:
 
 
 def nominal_of(problem: Problem) -> dict[str, Any]:
-    """What was held against the recordings."""
+    """Kind, source, checksum and joints of the nominal model."""
     model = problem.nominal
     return {
         "kind": kind if (kind := str(getattr(model, "kind", ""))) in KINDS else "learned",
@@ -119,9 +119,9 @@ def _recording(recording: Recording, role: str) -> dict[str, Any]:
 
 def _mismatch(state: DiagnosisState, joint: int) -> JointMismatch:
     problem = state.problem
-    rest, counts = stacked(problem, problem.fit)
-    residual = rest[:, joint] * counts[:, joint]
-    rms = float(np.sqrt(np.sum(residual**2) / max(1, counts[:, joint].sum())))
+    residuals, valid = stacked(problem, problem.fit)
+    residual = residuals[:, joint] * valid[:, joint]
+    rms = float(np.sqrt(np.sum(residual**2) / max(1, valid[:, joint].sum())))
     noise = float(state.noise[joint])
     where = locate(problem, residual, joint, is_prismatic(problem, joint), events_in_fit(state))
     return JointMismatch(
@@ -138,10 +138,10 @@ def _effects(state: DiagnosisState) -> tuple[EffectFound, ...]:
     comparisons = {c.index: c for c in state.comparisons}
     out = []
     for n, index in enumerate(state.selection.indices):
-        part = state.holdout_gain[index]
+        gain = state.holdout_gain[index]
         rival, odds = comparisons[index].best_rival
-        variance = state.problem.scale**2 if part.silent else state.problem.unseen_variance
-        evidence = EffectEvidence(*part.of_variance(variance), part.share, rival, odds)
+        variance = state.problem.scale**2 if gain.silent else state.problem.unseen_variance
+        evidence = EffectEvidence(*gain.of_variance(variance), gain.share, rival, odds)
         out.append(_effect(state, n, comparisons[index], evidence))
     return tuple(out)
 
@@ -166,12 +166,12 @@ def _effect(state: DiagnosisState, n: int, comparison: Comparison, evidence: Eff
 
 
 def _unexplained(state: DiagnosisState, joint: int) -> Unexplained:
-    problem, left = state.problem, state.remainders[joint]
-    depends_on = left.ceiling.depends_on
-    if left.above and "time" not in depends_on and changes_in_time(state, joint):
+    problem, remainder = state.problem, state.remainders[joint]
+    depends_on = remainder.ceiling.depends_on
+    if remainder.above and "time" not in depends_on and changes_in_time(state, joint):
         depends_on = ("time", *depends_on)
-    formula = left.shape.formula if left.shape else None
-    return Unexplained(problem.joints[joint], left.above, left.share, depends_on, formula)
+    formula = remainder.shape.formula if remainder.shape else None
+    return Unexplained(problem.joints[joint], remainder.above, remainder.share, depends_on, formula)
 
 
 def _fit(state: DiagnosisState, joint: int) -> JointFit:
@@ -187,7 +187,7 @@ def _abstentions(state: DiagnosisState) -> tuple[Abstained, ...]:
     for a in state.library.abstentions:
         law = effect_named(a.effect)
         if a.effect == "link_inertia" and a.joint == state.problem.n_dof - 1:
-            continue  # the payload stands for it
+            continue  # the payload is the same law
         joint = None if a.joint is None else state.problem.joints[a.joint]
         out.append(Abstained(a.effect, joint, a.reason, advice(law, joint)))
     return (*(_ambiguous_words(state, v) for v in state.ambiguous), *out)

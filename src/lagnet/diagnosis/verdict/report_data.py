@@ -1,6 +1,6 @@
-"""The arrays behind a verdict: what a reader wants to see before believing it. Reports draw from here.
+"""The arrays behind a verdict, which reports draw: residuals, laws, and comparisons with rivals.
 
-A verdict holds the conclusions, as JSON; this holds the curves and the contests they rest on. Every part may be absent:
+A verdict holds the conclusions, as JSON; this holds the evidence for them. Every part may be absent:
 a learned nominal model has no skeleton, a joint without friction no law to draw.
 """
 
@@ -48,7 +48,7 @@ class ResidualByVelocity:
     Args:
         velocity: v, shape (n,) [rad/s or m/s].
         nominal: residual of the nominal model, shape (n,) [N m or N].
-        corrected: residual left by the named effects, shape (n,) [N m or N].
+        corrected: residual of the corrected model, shape (n,) [N m or N].
     """
 
     velocity: Samples
@@ -58,10 +58,10 @@ class ResidualByVelocity:
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """The sum of the named friction effects of one joint as a curve over velocity.
+    """r(v), the sum of the named friction effects of one joint as a curve over velocity.
 
     Args:
-        effects: names of the catalogue that the curve adds up.
+        effects: names of the effects in the sum.
         velocity: v, shape (n,) [rad/s or m/s], increasing.
         torque: r(v), shape (n,) [N m or N].
     """
@@ -73,7 +73,7 @@ class FrictionLaw:
 
 @dataclass(frozen=True)
 class JointEvidence:
-    """What one joint's verdict rests on.
+    """The evidence on one joint.
 
     Args:
         joint: its name.
@@ -82,9 +82,9 @@ class JointEvidence:
         residual: residual against velocity.
         law: the fitted friction law.
         noise_rms: estimated noise of the torque residual [unit].
-        ceiling_share: share of what the named effects leave that any smooth function of state and short history
-            predicts on held-out motion, 0 to 1; None where they leave noise alone.
-        leftover: what they leave, against the signal that predicts it best.
+        ceiling_share: predictable share of the remainder, R² of a smooth function of state and short history on
+            held-out motion, 0 to 1; None where the remainder is noise.
+        leftover: the remainder against the signal that predicts it best.
     """
 
     joint: str
@@ -113,7 +113,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Skeleton:
-    """Where the joints of the arm lie in one pose, in the base frame.
+    """Positions and axes of the joints in one pose, in the base frame.
 
     Args:
         points: base, origin of every joint in model order, tip; shape (dof + 2, 3) [m].
@@ -126,14 +126,14 @@ class Skeleton:
 
 @dataclass(frozen=True, eq=False)
 class ArmMotion:
-    """A held-out motion to play, with what is missing at every joint.
+    """A held-out motion to play, with the residual of every joint.
 
     Args:
         tree: the moving bodies.
         tip: shape (3,), point at the end of the arm in the last joint's frame [m].
         time: shape (m,), from zero [s].
         q: shape (m, dof), positions [rad or m].
-        before, after: shape (m, dof), size of the torque that the nominal and the corrected model miss, in scatters of
+        before, after: shape (m, dof), |r_j| of the nominal and of the corrected model over the standard deviation of
             the measured torque.
     """
 
@@ -147,7 +147,7 @@ class ArmMotion:
 
 @dataclass(frozen=True)
 class SelectionStep:
-    """One effect taken up, and the mean nMSE on held-out blocks with it."""
+    """One selected effect, and the mean nMSE on held-out blocks with it and all before it."""
 
     effect: str
     joint: str | None
@@ -156,7 +156,7 @@ class SelectionStep:
 
 @dataclass(frozen=True)
 class ReportData:
-    """All that a report shows beyond the verdict itself.
+    """The evidence that a report shows beside the verdict.
 
     Args:
         joints: one entry a joint, in model order.

@@ -1,4 +1,4 @@
-"""Transients and event intervals, as parts of a verdict."""
+"""Effects and sentences of a verdict on transients, event intervals and drifting friction."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ MOSTLY = 0.5  # of the held-out residual power in events, above which the remain
 def transient_effects(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
     """The named effects that act on an interval of one fitted recording."""
     half = 0.5 / state.problem.rate  # an edge lies between the last sample outside and the first inside
-    return tuple(_effect(p, _name(fit, p.effect.recording or 0), half) for p in state.transients)
+    return tuple(_effect(t, _name(fit, t.effect.recording or 0), half) for t in state.transients)
 
 
-def _effect(passing: Transient, recording: str, half: float) -> EffectFound:
-    fit, (start, end) = passing.fit, passing.effect.interval or (0.0, 0.0)
-    effect = replace(passing.effect, interval=(start - half, end + half))
+def _effect(transient: Transient, recording: str, half: float) -> EffectFound:
+    fit, (start, end) = transient.fit, transient.effect.interval or (0.0, 0.0)
+    effect = replace(transient.effect, interval=(start - half, end + half))
     law = effect_named(effect.effect)
     units = {p.name: p.unit for p in law.parameters} | dict.fromkeys(EDGES, "s")
     parameters = tuple(
-        NamedParameter(n, float(x), units[n], passing.intervals[n]) for n, x in effect.parameters().items()
+        NamedParameter(n, float(x), units[n], transient.intervals[n]) for n, x in effect.parameters().items()
     )
-    evidence = EffectEvidence(fit.without, fit.with_it, passing.share, fit.rival, fit.odds)
+    evidence = EffectEvidence(fit.without, fit.with_it, transient.share, fit.rival, fit.odds)
     interval = effect.interval or (0.0, 0.0)
-    words = explain_transient(law, interval, recording, parameters, fit.tied, evidence)
+    sentence = explain_transient(law, interval, recording, parameters, fit.tied, evidence)
     status = "tied" if fit.tied else "named"
-    return EffectFound(law.name, None, status, fit.tied, parameters, evidence, words, interval, recording)
+    return EffectFound(law.name, None, status, fit.tied, parameters, evidence, sentence, interval, recording)
 
 
 def words_on_time(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
@@ -77,11 +77,11 @@ def events_in_fit(state: DiagnosisState) -> tuple[tuple[int, float, float], ...]
 def changes_in_time(state: DiagnosisState, joint: int) -> bool:
     """Whether a joint's remainder depends on time: its friction drifts, or most of it lies in event intervals."""
     drifts = any(d.joint == joint for d in state.drifts)
-    return drifts or _in_spells(state, state.after.holdout[0][:, joint]) > MOSTLY
+    return drifts or _share_in_events(state, state.after.holdout[0][:, joint]) > MOSTLY
 
 
-def _in_spells(state: DiagnosisState, rest: np.ndarray) -> float:
-    """Share of a joint's held-out residual power, shape (n,), that lies in intervals without a name."""
+def _share_in_events(state: DiagnosisState, residual: np.ndarray) -> float:
+    """Σ_events r² / Σ r² of a joint's held-out residual r, shape (n,), over intervals without a name."""
     held = [s for s in state.events if s.held_out]
     inside = [
         np.any([(p.recording == s.recording) & (t >= s.start) & (t <= s.end) for s in held], axis=0)
@@ -89,5 +89,5 @@ def _in_spells(state: DiagnosisState, rest: np.ndarray) -> float:
         for t in (p.time[p.keep],)
         if held
     ]
-    power = rest**2
+    power = residual**2
     return float(power[np.concatenate(inside)].sum() / max(power.sum(), 1e-300)) if inside else 0.0

@@ -27,7 +27,7 @@ class NamedParameter:
 
 @dataclass(frozen=True)
 class EffectEvidence:
-    """Why an effect is named."""
+    """Held-out nMSE without and with an effect, its share of the mismatch, and the odds over its best rival."""
 
     holdout_nmse_without: float
     holdout_nmse_with: float
@@ -38,9 +38,9 @@ class EffectEvidence:
 
 @dataclass(frozen=True)
 class EffectFound:
-    """Physics that was left out. `joint` is None for an effect of the whole arm.
+    """Physics that the nominal model lacks. `joint` is None for an effect of the whole arm.
 
-    What acts for a while only has the interval and the recording in which it does.
+    A transient has the interval and the recording in which it acts; both are None for persistent effects.
     """
 
     effect: str
@@ -60,7 +60,7 @@ class EffectFound:
 
 @dataclass(frozen=True)
 class JointMismatch:
-    """Where and how much one joint's nominal torque is off."""
+    """The nominal residual of one joint: its size, noise, and the regimes of motion in which it is large."""
 
     joint: str
     significant: bool
@@ -72,7 +72,7 @@ class JointMismatch:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """What is left at a joint after the named physics, and a formula of its signals where a simple one holds most."""
+    """The remainder of a joint after the named physics, and a simple formula of its signals where one predicts most."""
 
     joint: str
     above_noise: bool
@@ -83,7 +83,7 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class JointFit:
-    """Errors of one joint on the held-out recordings."""
+    """nMSE of one joint on the held-out recordings, layer by layer."""
 
     joint: str
     nmse_nominal: float
@@ -96,7 +96,7 @@ class JointFit:
 
 @dataclass(frozen=True)
 class Abstained:
-    """An effect on which the recordings say nothing, and what to record to hear of it."""
+    """An effect that the recordings cannot determine, and the motion that would."""
 
     effect: str
     joint: str | None
@@ -106,7 +106,7 @@ class Abstained:
 
 @dataclass(frozen=True)
 class Rejected:
-    """An effect that was considered and not named, with the rule, its figure and its limit, and the reason."""
+    """An effect that was considered and not named, with the rule, its value, its limit and the reason."""
 
     effect: str
     joint: str | None
@@ -118,7 +118,7 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Verdict:
-    """All that a diagnosis concluded; `to_dict` is valid under verdict.schema.json."""
+    """The conclusions of a diagnosis; `to_dict` is valid under verdict.schema.json."""
 
     lagnet_version: str
     seed: int
@@ -138,7 +138,7 @@ class Verdict:
 
     @property
     def found(self) -> bool:
-        """Whether any joint differs from its nominal torque by more than noise explains."""
+        """Whether any joint's nominal residual is significantly larger than its noise."""
         return any(j.significant for j in self.joints)
 
     def to_dict(self) -> dict[str, Any]:
@@ -160,10 +160,10 @@ class Verdict:
 
 
 def with_data_quality(verdict: Verdict, findings: Sequence[Finding]) -> Verdict:
-    """The verdict with what is wrong with its data; what was mended, or is not certain, stands before all warnings."""
-    told = tuple(finding.sentence() for finding in findings)
+    """The verdict with faults of its data, those that were corrected or are not certain also before all warnings."""
+    sentences = tuple(finding.sentence() for finding in findings)
     data = tuple(finding.to_dict() for finding in findings)
-    return replace(verdict, warnings=(*told, *verdict.warnings), data_quality=data)
+    return replace(verdict, warnings=(*sentences, *verdict.warnings), data_quality=data)
 
 
 def _finite(node: Any, where: str = "verdict") -> Any:

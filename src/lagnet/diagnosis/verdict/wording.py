@@ -1,4 +1,4 @@
-"""Sentences of a verdict that an engineer can act on."""
+"""Sentences of a verdict."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SELDOM_MET = (
 def explain(
     law: Effect, joint: str | None, parameters: Sequence[NamedParameter], tied: Sequence[str], evidence: EffectEvidence
 ) -> str:
-    """One or two sentences: what, where, how large, and what it does for the held-out error."""
+    """One or two sentences: effect, joint, parameters, held-out error with and without it, and ties."""
     where = f"at {joint}" if joint else "on the whole arm"
     shown = values(parameters)
     remark = law.remark({p.name: p.value for p in parameters})
@@ -38,8 +38,8 @@ def explain(
 
 def values(parameters: Sequence[NamedParameter]) -> str:
     """The first few parameters that the recordings determine, with their values."""
-    told = [p for p in parameters if p.ci95[1] - p.ci95[0] < 2.0 * NOT_SAID] or parameters
-    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in told[:MOST_PARAMETERS])
+    determined = [p for p in parameters if p.ci95[1] - p.ci95[0] < 2.0 * NOT_SAID] or parameters
+    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in determined[:MOST_PARAMETERS])
 
 
 def explain_transient(
@@ -50,7 +50,7 @@ def explain_transient(
     tied: Sequence[str],
     evidence: EffectEvidence,
 ) -> str:
-    """What acted, when, in which recording, and what it does for parts of that time that were not fitted."""
+    """Effect, interval, recording, parameters, and the cross-validated error with and without it on that interval."""
     shown = values(parameters)
     first = f"{law.title} from {interval[0]:.4g} s to {interval[1]:.4g} s of {recording}, {law.formula} with {shown}: "
     first += f"in that time the error is {percent(evidence.holdout_nmse_without)} of the torque's variance without it, "
@@ -92,13 +92,13 @@ def percent(share: float) -> str:
 
 
 def advice(law: Effect, joint: str | None) -> str:
-    """What to record so that an effect can be judged."""
+    """The motion that determines an effect."""
     where = f"{joint}: " if joint else ""
     return f"{where}record {law.shown_by}"
 
 
 def clock_shift_words(fit: Conditioned) -> Iterator[str]:
-    """A sentence where torques were read at other times than they are stamped with."""
+    """A sentence where torques were shifted against their time stamps."""
     if fit.torque_shift:
         way = "later" if fit.torque_shift > 0 else "earlier"
         yield (
