@@ -1,4 +1,4 @@
-"""Expected log odds between two tied explanations on a motion that was not recorded yet."""
+"""E[log odds] between two tied explanations on a motion that is not recorded yet."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from lagnet.diagnosis.regression.normal_equations import ridge_solve
 from lagnet.diagnosis.selection.arm_search import Selection
 from lagnet.experiment_design.open_ties import Explanation, OpenTie
 
-SURE = 2.0  # times what breaks a tie on average: noise takes part of it away
+SURE = 2.0  # expected over required log odds: noise reduces the observed ones
 
 
 @dataclass(frozen=True)
 class Separation:
-    """What a recording of a motion is expected to say on a tie.
+    """Expected evidence of a recording on a tie.
 
     Args:
         standard_errors: distance of the explanations, the rival refitted to old and new recordings together.
-        log10_odds: evidence that this is for the truth, whichever of the two it is.
-        margin: evidence over the least that breaks the tie.
+        log10_odds: expected odds of the true explanation over the other, whichever of the two it is.
+        margin: expected over required log odds.
     """
 
     standard_errors: float
@@ -31,29 +31,29 @@ class Separation:
 
     @property
     def breaks(self) -> bool:
-        """Whether the recording can be counted on to break the tie."""
+        """Whether the recording is expected to break the tie with a safety factor `SURE`."""
         return self.margin >= SURE
 
 
 def separation(equations: NormalEquations, found: Selection, tie: OpenTie, tables: Sequence[np.ndarray]) -> Separation:
-    """The least separation over the rival's shapes, and over which of the two is the truth.
+    """min over the rival's shapes, and over which of the two is true, of the expected log odds.
 
-    The rival is fitted to the torque that the truth predicts, on the recordings that there are and on the new motion:
-    what remains, in units of noise and counting samples that hang together as one, is what the evidence will be.
+    The rival is fitted to the torque that the truth predicts, on the present recordings and the new motion: the squared
+    residual over noise variance and statistical inefficiency is the expected evidence.
 
     Args:
-        bench, found: evidence of the recordings that there are, from `open_ties`.
+        equations, found: normal equations and selection of the present recordings, from `open_ties`.
         tie: the two explanations to be distinguished.
         tables: for each joint the reduced columns along the new motion with the residual last, shape (n, width + 1).
     """
     pairs = [(tie.named, other) for other in tie.others] + [(other, tie.named) for other in tie.others]
-    world = _World(equations, found, tie, tuple(tables))
-    return min((world.separation(truth, rival) for truth, rival in pairs), key=lambda s: s.margin)
+    comparison = _Comparison(equations, found, tie, tuple(tables))
+    return min((comparison.separation(truth, rival) for truth, rival in pairs), key=lambda s: s.margin)
 
 
 @dataclass(frozen=True, eq=False)
-class _World:
-    """Sums over old and new samples together."""
+class _Comparison:
+    """Expected residuals over old and new samples together."""
 
     equations: NormalEquations
     found: Selection
@@ -62,37 +62,37 @@ class _World:
 
     @property
     def joints(self) -> tuple[int, ...]:
-        """Where the explanations are compared."""
+        """Joints at which the explanations are compared."""
         return self.tie.joints
 
     def separation(self, truth: Explanation, rival: Explanation) -> Separation:
         grams = {j: self.equations.total[j] + self.tables[j].T @ self.tables[j] for j in self.joints}
-        left = self._left(grams, truth, rival)
-        noise, pieces = self._noise()
-        distance = {j: left[j] / (noise[j] * self.found.scales.inefficiency[j]) for j in self.joints}
-        nats = sum(0.5 * pieces[j] * np.log1p(distance[j] / pieces[j]) for j in self.joints)
+        lost = self._lost(grams, truth, rival)
+        noise, independent = self._noise()
+        distance = {j: lost[j] / (noise[j] * self.found.scales.inefficiency[j]) for j in self.joints}
+        nats = sum(0.5 * independent[j] * np.log1p(distance[j] / independent[j]) for j in self.joints)
         odds = float(nats / np.log(10.0))
         margin = odds / self.equations.limits.tie_odds
-        if not self.tie.arm_wide:  # errors that differ by next to nothing are the same whatever the odds
-            margin = min(margin, max(left[j] / self._same(j, grams[j], noise[j]) for j in self.joints))
+        if not self.tie.arm_wide:  # errors that are nearly equal are tied whatever the odds
+            margin = min(margin, max(lost[j] / self._same(j, grams[j], noise[j]) for j in self.joints))
         return Separation(float(np.sqrt(sum(distance.values()))), odds, float(margin))
 
     def _same(self, joint: int, gram: np.ndarray, noise: float) -> float:
-        """Squared error by which two explanations must differ so that they are not the same."""
-        counted = self.equations.samples[joint] + len(self.tables[joint])
+        """Least difference of squared errors of two explanations that are not equal."""
+        n_samples = self.equations.samples[joint] + len(self.tables[joint])
         limits = self.equations.limits
-        return max(limits.same_error * noise * counted, limits.least_of_residual * gram[-1, -1])
+        return max(limits.same_error * noise * n_samples, limits.least_of_residual * gram[-1, -1])
 
     def _noise(self) -> tuple[np.ndarray, np.ndarray]:
-        """Squared error of a sample, and independent pieces of evidence, shape (dof,) each."""
-        scales = self.found.scales  # joints that rested have no error yet, but noise
+        """Error variance of a sample, and number of independent samples, shape (dof,) each."""
+        scales = self.found.scales  # joints at rest have no error, but noise
         power = np.maximum(np.maximum(self.found.fit.sse, scales.noise_power), 1e-12 * scales.torque_power)
         noise = np.maximum(power, 1e-300) / self.equations.samples
-        counted = self.equations.samples + np.array([len(t) for t in self.tables])
-        return noise, counted / scales.inefficiency
+        n_samples = self.equations.samples + np.array([len(t) for t in self.tables])
+        return noise, n_samples / scales.inefficiency
 
-    def _left(self, grams: dict[int, np.ndarray], truth: Explanation, rival: Explanation) -> dict[int, float]:
-        """Squared torque of the truth that the rival, fitted anew, does not reach, for each joint."""
+    def _lost(self, grams: dict[int, np.ndarray], truth: Explanation, rival: Explanation) -> dict[int, float]:
+        """min_θ |τ_truth − X θ|² of the rival, refitted, for each joint [N² m²]."""
         (selected, theta), (others, _) = truth, rival
         where_truth, where_rival = self._where(selected), self._where(others)
         size = sum(self.equations.library.widths[i] for i in others)

@@ -1,4 +1,4 @@
-"""What a motion, recorded, is expected to add to a diagnosis: ties broken, and effects shown that were not."""
+"""Expected information of a motion: log odds of ties, and excitation of effects that were not excited."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from lagnet.recordings.conditioning.condition import Stretch
 from lagnet.types import Trajectory
 
 FITTED = 0.8  # of the motion: a diagnosis holds the last fifth of a recording out
-OF_BANDWIDTH = 5.0  # samples per period of the bandwidth at which a motion is judged
-LEAST_RATE = 100.0  # [Hz] unless the recordings are slower: strokes turn sharply
+OF_BANDWIDTH = 5.0  # samples per period of the bandwidth at which a motion is evaluated
+LEAST_RATE = 100.0  # [Hz] unless the recordings are slower: strokes reverse quickly
 
 
 @dataclass(frozen=True)
 class Expectation:
-    """What a recording of one motion is expected to say.
+    """Expected information of one motion.
 
     Args:
         separations: one for each tie, in order.
-        shown: for each abstention, whether the motion shows the effect.
+        shown: for each abstention, whether the motion excites the effect.
     """
 
     separations: tuple[Separation, ...]
@@ -38,27 +38,27 @@ class Expectation:
 
     @property
     def lack(self) -> float:
-        """What stays open, to be made small: mostly that of the least separated tie, without being stuck at one."""
+        """Σ exp(−√margin), to be minimised: a smooth count of questions that stay open, the least separated most."""
         margins = [s.margin for s in self.separations] + [2.0 * SURE * flag for flag in self.shown]
         return float(np.sum(np.exp(-np.sqrt(np.maximum(margins, 0.0)))))
 
 
 class Prospect:
-    """The open questions of a diagnosis, of which any motion can be asked what it would answer.
+    """The open questions of a diagnosis, and the expected information of any motion on them.
 
     Args:
         state: of the diagnosis.
 
     Attributes:
         ties: those that motion can break.
-        unbreakable: those of laws that are the same while the joint moves.
-        abstentions: effects that the recordings could not show.
+        unbreakable: those of observationally equivalent laws.
+        abstentions: effects that the recordings did not excite.
     """
 
     def __init__(self, state: DiagnosisState):
         self._state = state
-        self._bench: NormalEquations
-        self._bench, self._found, ties = open_ties(state.problem, state.library, state.selection, state.comparisons)
+        self._equations: NormalEquations
+        self._equations, self._found, ties = open_ties(state.problem, state.library, state.selection, state.comparisons)
         self.ties: tuple[OpenTie, ...] = tuple(
             t for t in ties if not observationally_equivalent(t.instead_of, t.rivals)
         )
@@ -70,17 +70,17 @@ class Prospect:
         self.rate = min(state.fit.rate, max(OF_BANDWIDTH * state.fit.bandwidth, LEAST_RATE))
 
     def _about_motion(self, abstention: Abstention) -> bool:
-        """Whether the reason is the motion, not the model; the last link has another name."""
+        """Whether the motion is the reason, and not the model; a change of the last link is a payload."""
         law, joint = effect_named(abstention.effect), abstention.joint
         elsewhere = (abstention.effect, joint) == ("link_inertia", self._state.problem.n_dof - 1)
         return not elsewhere and law.excitation(self._summary, joint) == abstention.reason
 
     def torque(self, motion: CandidateMotion) -> Trajectory:
-        """Torque that the corrected model expects along the motion, shape (n, dof) [N m]."""
+        """Torque of the corrected model along the motion, shape (n, dof) [N m]."""
         return self._state.corrected.torque_along(motion.time, motion.q, motion.v, motion.a)
 
     def expectation(self, motion: CandidateMotion, torque: Trajectory) -> Expectation:
-        """What recording the motion is expected to say.
+        """The expected information of a motion.
 
         Args:
             motion: on the clock of `rate`.
@@ -89,21 +89,21 @@ class Prospect:
         posed = self._posed(motion, torque)
         pieces = [self._tables(posed, piece) for piece in posed.fit]
         joined = [np.concatenate(tables) for tables in zip(*pieces, strict=True)]
-        told = tuple(separation(self._bench, self._found, tie, joined) for tie in self.ties)
+        separations = tuple(separation(self._equations, self._found, tie, joined) for tie in self.ties)
         both = self._joined_summary(posed)
         shown = tuple(effect_named(a.effect).excitation(both, a.joint) is None for a in self.abstentions)
-        return Expectation(told, shown)
+        return Expectation(separations, shown)
 
     def _posed(self, motion: CandidateMotion, torque: Trajectory) -> Problem:
         n = int(FITTED * motion.time.size)
         stretch = Stretch(motion.time[:n], motion.q[:n], motion.v[:n], motion.a[:n], torque[:n], 0, 0, n - 1)
         conditioned = replace(self._state.fit, stretches=(stretch,), rate=self.rate)
         posed = pose_problem(self._state.problem.nominal, conditioned, conditioned)
-        told = self._state.problem
-        return replace(posed, slow=told.slow, straight=told.straight, known=told.known)
+        present = self._state.problem
+        return replace(posed, slow=present.slow, straight=present.straight, known=present.known)
 
     def _tables(self, posed: Problem, piece: Segment) -> list[np.ndarray]:
-        tables = self._bench.library.tables(posed, piece)
+        tables = self._equations.library.tables(posed, piece)
         return [table * piece.counts[:, [joint]] for joint, table in enumerate(tables)]
 
     def _joined_summary(self, posed: Problem) -> Motion:

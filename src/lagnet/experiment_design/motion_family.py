@@ -1,7 +1,7 @@
-"""Motions that could be recorded next: chapters of poses, with strokes, sweeps, sines or a hold in each.
+"""q(t; x), a family of motions: segments of poses, with strokes, sweeps, sines or a hold in each.
 
-A motion is written down as an array of genes between 0 and 1, so that a search can draw and change it blindly; limits
-hold for whatever the genes say.
+The decision vector x has components between 0 and 1, so that a random search can draw and change it without knowing
+them; limits hold for any x.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from lagnet.experiment_design.motion_limits import MotionLimits
 from lagnet.recordings.conditioning.smoothing import derivative
 from lagnet.types import JointVector, Samples, Trajectory
 
-CHAPTERS = 5  # poses, one after the other
-CHAPTER = 6.0  # [s]
-MOVE = 2.0  # [s] of a chapter for moving to its pose
-EASE = 0.6  # [s] over which the strokes of a chapter begin and end
-PAUSE = 0.3  # [s] of rest at the end of a chapter
+SEGMENTS = 5  # poses, one after the other
+DURATION = 6.0  # [s] of a segment
+MOVE = 2.0  # [s] of a segment for moving to its pose
+EASE = 0.6  # [s] over which the strokes of a segment begin and end
+PAUSE = 0.3  # [s] of rest at the end of a segment
 SLOWEST, FASTEST = 0.2, 1.0  # [Hz] of the strokes
-GENES = 6  # for a joint in a chapter: pose, reach, tempo, squareness, phase, overtone
+N_VARIABLES = 6  # for a joint in a segment: pose, reach, tempo, squareness, phase, overtone
 POSE_RANGE = 0.9  # of half the position range, for poses; the remainder is room for strokes
-HELD = 0.2  # value of the gene of reach up to which the joint is held
+HELD = 0.2  # component of reach up to which the joint is held
 SQUAREST = 0.98  # of a sine, before the arcsine makes it a stroke of constant speed
-SHRINKING = (1.0, 0.7, 0.45, 0.25, 0.1, 0.03)  # tried on a motion whose torque is too large
+SHRINKING = (1.0, 0.7, 0.45, 0.25, 0.1, 0.03)  # factors on a motion whose torque is too large
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,43 +38,43 @@ class CandidateMotion:
 
 
 def draw_decision_vector(n_dof: int, rng: np.random.Generator) -> np.ndarray:
-    """Genes of any motion, shape (CHAPTERS, dof, GENES)."""
-    return rng.uniform(size=(CHAPTERS, n_dof, GENES))
+    """x of a random motion, shape (SEGMENTS, dof, N_VARIABLES)."""
+    return rng.uniform(size=(SEGMENTS, n_dof, N_VARIABLES))
 
 
 def change_decision_vector(decision_vector: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """The genes of one joint, or of one chapter, moved a little or drawn anew."""
+    """x with the components of one joint, or of one segment, perturbed or drawn again."""
     changed = decision_vector.copy()
     place = (
-        (rng.integers(CHAPTERS), slice(None))
+        (rng.integers(SEGMENTS), slice(None))
         if rng.uniform() < 0.5
         else (slice(None), rng.integers(decision_vector.shape[1]))
     )
     part = decision_vector[place]
-    fresh = rng.uniform(size=part.shape)
-    near = np.clip(part + 0.15 * rng.standard_normal(part.shape), 0.0, 1.0)
-    changed[place] = np.where(rng.uniform(size=part.shape) < 0.3, fresh, near)
+    redrawn = rng.uniform(size=part.shape)
+    perturbed = np.clip(part + 0.15 * rng.standard_normal(part.shape), 0.0, 1.0)
+    changed[place] = np.where(rng.uniform(size=part.shape) < 0.3, redrawn, perturbed)
     return changed
 
 
 def motion_of(decision_vector: np.ndarray, limits: MotionLimits, rate: float, shrink: float = 1.0) -> CandidateMotion:
-    """The motion that genes stand for, inside the limits of position, speed and acceleration.
+    """q(t; x), inside the limits of position, speed and acceleration.
 
     Args:
-        genes: shape (CHAPTERS, dof, GENES).
+        decision_vector: x, shape (SEGMENTS, dof, N_VARIABLES).
         limits: of every joint.
         rate: samples a second [Hz].
         shrink: of all excursions towards the middle of the range.
     """
-    time = np.arange(round(CHAPTERS * CHAPTER * rate)) / rate
+    time = np.arange(round(SEGMENTS * DURATION * rate)) / rate
     half = 0.5 * (limits.upper - limits.lower)
     poses = half * POSE_RANGE * (2.0 * decision_vector[:, :, 0] - 1.0)
     moves = _within(limits, time, _between_poses(time, poses))
     strokes = np.zeros_like(moves)
-    for chapter in range(CHAPTERS):
-        rows = (time >= chapter * CHAPTER) & (time < (chapter + 1) * CHAPTER)
-        room = half - np.abs(poses[chapter])
-        strokes[rows] = _strokes(time[rows] - chapter * CHAPTER, decision_vector[chapter], half, room)
+    for segment in range(SEGMENTS):
+        rows = (time >= segment * DURATION) & (time < (segment + 1) * DURATION)
+        room = half - np.abs(poses[segment])
+        strokes[rows] = _strokes(time[rows] - segment * DURATION, decision_vector[segment], half, room)
         strokes[rows] = _within(limits, time[rows], strokes[rows])
     x = _within(limits, time, shrink * (moves + strokes))
     v = derivative(time, x)
@@ -82,7 +82,7 @@ def motion_of(decision_vector: np.ndarray, limits: MotionLimits, rate: float, sh
 
 
 def _within(limits: MotionLimits, time: Samples, x: Trajectory) -> Trajectory:
-    """A signal made smaller where it is too fast or too sudden, shape (n, dof)."""
+    """A signal scaled down where its speed or acceleration exceeds the limits, shape (n, dof)."""
     v = derivative(time, x)
     return x * np.minimum(1.0, np.minimum(_share(limits.speed, v), _share(limits.acceleration, derivative(time, v))))
 
@@ -93,23 +93,23 @@ def _share(limit: JointVector, x: Trajectory) -> JointVector:
 
 
 def _between_poses(time: Samples, poses: Trajectory) -> Trajectory:
-    """Quintic moves from the last pose at the start of each chapter, then rest, shape (n, dof)."""
-    chapter = np.minimum((time / CHAPTER).astype(int), CHAPTERS - 1)
+    """Quintic moves from the last pose at the start of each segment, then rest, shape (n, dof)."""
+    segment = np.minimum((time / DURATION).astype(int), SEGMENTS - 1)
     before = np.vstack([poses[:1], poses[:-1]])
-    s = _smooth_step((time - chapter * CHAPTER) / MOVE)[:, None]
-    return before[chapter] + s * (poses - before)[chapter]
+    s = _smooth_step((time - segment * DURATION) / MOVE)[:, None]
+    return before[segment] + s * (poses - before)[segment]
 
 
 def _strokes(time: Samples, decision_vector: np.ndarray, half: JointVector, room: JointVector) -> Trajectory:
-    """Strokes about the pose of a chapter, from rest to rest, shape (n, dof); time runs from 0 to CHAPTER."""
+    """Strokes about the pose of a segment, from rest to rest, shape (n, dof); time runs from 0 to DURATION."""
     _, reach, tempo, squareness, phase, overtone = decision_vector.T
     size = np.where(reach > HELD, np.minimum(half * (reach - HELD) / (1.0 - HELD), room), 0.0)
     rate = SLOWEST * (FASTEST / SLOWEST) ** tempo
     angle = 2.0 * np.pi * (time[:, None] * rate + phase)
-    bent = SQUAREST * squareness + 1e-3
-    wave = np.arcsin(bent * np.sin(angle)) / np.arcsin(bent)  # a sine, or strokes of almost constant speed
+    shape = SQUAREST * squareness + 1e-3
+    wave = np.arcsin(shape * np.sin(angle)) / np.arcsin(shape)  # a sine, or strokes of almost constant speed
     wave = (wave + overtone**2 * np.sin(3.0 * angle)) / (1.0 + overtone**2)
-    window = _smooth_step((time - MOVE) / EASE) * _smooth_step((CHAPTER - PAUSE - time) / EASE)
+    window = _smooth_step((time - MOVE) / EASE) * _smooth_step((DURATION - PAUSE - time) / EASE)
     return window[:, None] * size * wave
 
 

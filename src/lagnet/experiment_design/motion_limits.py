@@ -1,4 +1,4 @@
-"""What a suggested motion may do: the arm's limits with a margin, or what the arm did in the recordings."""
+"""Bounds on q, v, a and τ of a suggested motion: the arm's limits with a margin, or the range of the recordings."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.types import JointVector, Trajectory
 
-BEYOND = 0.7  # [rad] that a joint with known limits may go farther than it went in the recordings
-SLIDE = 0.1  # what a metre of a prismatic joint counts in these radians
+BEYOND = 0.7  # [rad] beyond the recorded range, for a joint with known limits
+SLIDE = 0.1  # [m/rad] a prismatic joint's equivalent of a radian in these limits
 POSITION_MARGIN = 0.05  # of the position range, kept from both ends
 SPEED_SHARE = 0.7  # of the speed limit
 TOP_SPEED = 1.5  # [rad/s] whatever the limit, unless the recordings were faster
 EFFORT_SHARE = 0.8  # of the effort limit
 ROUNDING = 1e-9  # [rad]
-MODEST = 2.0  # [rad/s²] that a joint with known limits may always have, as far as its effort goes
+MODEST = 2.0  # [rad/s²] always allowed to a joint with known limits, within its effort limit
 OF_OTHERS = 0.5  # of the other joints' usual acceleration, for a joint that stood still in the recordings
 
 
@@ -53,11 +53,11 @@ class MotionLimits:
 
 
 def motion_limits(problem: Problem) -> MotionLimits:
-    """Limits of the model where it states any, with a margin and not far from where the arm has been.
+    """Limits of the model where it states any, with a margin and near the recorded range.
 
-    What the recordings show is always allowed: the arm did it. No description states a limit of acceleration: it is
-    that of the recordings, or a modest one, and what the effort limit leaves. A model without limits, such as a learned
-    one, is kept to the recorded range of everything.
+    The recorded range is always allowed. No robot description states a limit of acceleration: it is that of the
+    recordings, or a modest one, and the effort limit. A model without limits, such as a learned one, has the recorded
+    range of all four.
     """
     q, v, a, tau = (np.concatenate([getattr(p, name) for p in problem.fit]) for name in ("q", "v", "a", "tau"))
     lowest, highest = q.min(axis=0), q.max(axis=0)

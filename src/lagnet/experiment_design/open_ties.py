@@ -1,4 +1,4 @@
-"""The ties of a diagnosis, as pairs of explanations that another recording may distinguish."""
+"""The ties of a diagnosis, as pairs of explanations that another recording may discriminate."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ Alternatives = tuple[tuple[int, ...], Explanation, list[Explanation]]
 
 @dataclass(frozen=True, eq=False)
 class OpenTie:
-    """One effect and the names that could stand in its place.
+    """One effect and the rivals that explain the recordings as well.
 
     Args:
         effect, joint: the named effect.
-        instead_of: what the rivals replace: the effect, or it and a neighbour.
-        rivals: names that explain the recordings as well, together in its place.
-        joints: where the two are compared: its joint, or all of them.
+        instead_of: names that the rivals replace: the effect, or it and another one.
+        rivals: names that replace them together.
+        joints: at which the two are compared: that of the effect, or all.
         named: the selection with the effect.
         others: selections with the rivals, one for each of their shapes.
-        far: whether the effect itself is arm-wide.
+        arm_wide: whether the effect acts on the whole arm.
     """
 
     effect: str
@@ -48,7 +48,7 @@ class OpenTie:
 def open_ties(
     problem: Problem, library: Library, found: Selection, comparisons: tuple[Comparison, ...]
 ) -> tuple[NormalEquations, Selection, tuple[OpenTie, ...]]:
-    """Workbench and selection of the hypotheses in question alone, and the ties among them, each told once."""
+    """Normal equations and selection of the hypotheses in question alone, and the ties among them, each once."""
     tied = {c.index: set(c.tied) for c in comparisons if c.tied}
     others = _hypotheses_in_question(problem, library, found, tied)
     equations, selected, number = narrow(problem, library, found, others)
@@ -62,7 +62,7 @@ def open_ties(
 def _hypotheses_in_question(
     problem: Problem, library: Library, found: Selection, tied: dict[int, set[str]]
 ) -> list[Hypothesis]:
-    """Every shape of the rivals, at the joints of the ties or, where they reach all joints, anywhere."""
+    """Every shape of the rivals, at the joints of the ties, or at all joints for arm-wide ones."""
     places = {(name, library.hypotheses[i].joint) for i, names in tied.items() for name in names}
     reaching = {n for i, names in tied.items() if library.hypotheses[i].law.reaches_all for n in names}
     chosen = {library.hypotheses[i] for i in found.indices}
@@ -85,7 +85,7 @@ def _ties_of(equations: NormalEquations, found: Selection, index: int, tied: set
 def _by_names(
     equations: NormalEquations, named: tuple[int, ...], others: list[Explanation]
 ) -> dict[tuple[tuple[str, ...], tuple[str, ...]], tuple[Explanation, ...]]:
-    """The alternatives by the names that they take away and those that they put instead."""
+    """The alternatives by the names that they remove and those that they add."""
     grouped: dict = {}
     for selection, theta in others:
         lost = tuple(sorted(equations.library.hypotheses[i].effect for i in named if i not in selection))
@@ -95,7 +95,7 @@ def _by_names(
 
 
 def _joint_alternatives(equations: NormalEquations, found: Selection, index: int) -> Alternatives:
-    """At one joint, given the arm-wide effects as they are."""
+    """Replacements at one joint, with the arm-wide effects fixed."""
     joint = equations.library.hypotheses[index].joint or 0
     own, view = found.local[joint], views_of(equations, found)[joint]
     others = [o for _, o in replacements(view, own, index) if np.isfinite(view.score(o))]
@@ -103,15 +103,17 @@ def _joint_alternatives(equations: NormalEquations, found: Selection, index: int
 
 
 def _arm_alternatives(equations: NormalEquations, found: Selection, index: int) -> Alternatives:
-    """On the whole arm: an arm-wide effect beside all others of the selection; for an effect of one joint, there."""
+    """Replacements on the whole arm: by an arm-wide effect; for an effect of one joint, by one of that joint."""
     hypotheses = equations.library.hypotheses
     sigma = found.sigma(equations)
-    rest = tuple(i for i in found.indices if i != index)
-    fresh = [k for k in equations.library.reaching if k not in rest and hypotheses[k].place != hypotheses[index].place]
+    others = tuple(i for i in found.indices if i != index)
+    added = [
+        k for k in equations.library.reaching if k not in others and hypotheses[k].place != hypotheses[index].place
+    ]
     if not hypotheses[index].law.reaches_all:
-        fresh = [k for k in fresh if hypotheses[k].joint == hypotheses[index].joint]
+        added = [k for k in added if hypotheses[k].joint == hypotheses[index].joint]
     out = []
-    for selection in (found.indices, *((*rest, k) for k in fresh)):
+    for selection in (found.indices, *((*others, k) for k in added)):
         fit = fit_selection(equations, selection, sigma, folds=False)
         out.append((selection, np.concatenate([fit.coefficients[i] for i in selection])))
     return tuple(range(equations.library.n_dof)), out[0], out[1:]

@@ -25,14 +25,14 @@ from lagnet.recordings.recording import Recording
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """How long the search for a motion goes on.
+    """Size of the random search.
 
     Args:
         draws: motions drawn at random.
-        kept: of the best of them, changed step by step.
-        steps: changes tried on each.
-        most_seconds: of processor time, after which the best so far is taken. Reached only with very fast sampling or
-            many joints; then the motion depends on the machine.
+        kept: of the best of them, improved by a random walk.
+        steps: of each walk.
+        most_seconds: of processor time, after which the best so far is returned. Reached only with very fast sampling
+            or many joints; then the motion depends on the machine.
     """
 
     draws: int = 80
@@ -43,15 +43,15 @@ class SearchSettings:
 
 @dataclass(frozen=True, eq=False)
 class SuggestedMotion:
-    """A motion to record next and what it is expected to say.
+    """A motion to record next with its expected information.
 
     Args:
         recording: time, q, v, a, and as `tau` the torque that the corrected model expects: a forecast, no measurement.
         limits: that the motion keeps.
-        ties: that motion can break, with their place in `expectation`.
+        ties: that motion can break, in the order of `expectation`.
         unbreakable: ties that no motion breaks.
-        abstentions: effects that were not judged for lack of motion.
-        expectation: what the recording is expected to say on ties and abstentions.
+        abstentions: effects that the recordings did not excite.
+        expectation: expected information on ties and abstentions.
         seed: of the search.
     """
 
@@ -65,16 +65,16 @@ class SuggestedMotion:
 
     @property
     def is_of_use(self) -> bool:
-        """Whether the recording is expected to settle anything."""
+        """Whether the recording is expected to break a tie or to excite an effect."""
         return any(s.breaks for s in self.expectation.separations) or any(self.expectation.shown)
 
 
 def suggest_motion(
     diagnosis: Diagnosis, seed: int = 0, settings: SearchSettings | None = None
 ) -> SuggestedMotion | None:
-    """A motion within the arm's limits that separates the rivals of a diagnosis best; None if nothing is open.
+    """argmin over motions within the arm's limits of the questions that stay open; None if none is open.
 
-    Motions are drawn at random; the best are changed a little again and again, while less stays open. Collisions of the
+    Motions are drawn at random; the best are improved by a random walk. Collisions of the
     arm with itself or its surroundings are not checked.
 
     Args:
@@ -102,23 +102,23 @@ class _Candidate:
 
 
 class _Search:
-    """Random draws, then a walk from the best of them."""
+    """Random draws, then a random walk from the best of them that accepts improvements."""
 
     def __init__(self, prospect: Prospect, limits: MotionLimits, settings: SearchSettings, rng: np.random.Generator):
         self._prospect, self._limits, self._settings, self._rng = prospect, limits, settings, rng
         self._end = time.process_time() + settings.most_seconds
 
     def best(self) -> _Candidate:
-        """The motion after which least stays open."""
+        """argmin of `Expectation.lack`."""
         n_dof = self._limits.middle.size
-        drawn = [self._judge(draw_decision_vector(n_dof, self._rng))]
+        drawn = [self._evaluated(draw_decision_vector(n_dof, self._rng))]
         while len(drawn) < self._settings.draws and not self._late():
-            drawn.append(self._judge(draw_decision_vector(n_dof, self._rng)))
+            drawn.append(self._evaluated(draw_decision_vector(n_dof, self._rng)))
         starts = sorted(drawn, key=lambda c: c.expectation.lack)[: self._settings.kept]
         return min((self._walk(c) for c in starts), key=lambda c: c.expectation.lack)
 
     def within_limits(self, decision_vector: np.ndarray, rate: float) -> tuple[CandidateMotion, np.ndarray]:
-        """The motion of the genes, shrunk until its torque is allowed, and that torque, shape (n, dof).
+        """q(t; x), scaled down until its torque is within limits, and that torque, shape (n, dof).
 
         Raises:
             DiagnosisError: even hardly moving takes more torque than the arm has.
@@ -140,11 +140,11 @@ class _Search:
         for _ in range(self._settings.steps):
             if self._late():
                 break
-            other = self._judge(change_decision_vector(candidate.decision_vector, self._rng))
+            other = self._evaluated(change_decision_vector(candidate.decision_vector, self._rng))
             if other.expectation.lack < candidate.expectation.lack:
                 candidate = other
         return candidate
 
-    def _judge(self, decision_vector: np.ndarray) -> _Candidate:
+    def _evaluated(self, decision_vector: np.ndarray) -> _Candidate:
         motion, torque = self.within_limits(decision_vector, self._prospect.rate)
         return _Candidate(decision_vector, self._prospect.expectation(motion, torque))

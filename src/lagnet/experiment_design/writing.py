@@ -1,4 +1,4 @@
-"""Writes a suggested motion as a recording file, with what it is expected to say beside it, and puts it into words."""
+"""Writes a suggested motion as a recording file, with its expected information, and puts it into words."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TAU = "torque that the corrected model expects, not measured"
 
 
 def write_suggestion(suggested: SuggestedMotion | None, folder: str | Path) -> tuple[Path, ...]:
-    """Writes the motion and what is expected of it; takes those of an earlier diagnosis away.
+    """Writes the motion and its expected information; removes those of an earlier diagnosis.
 
     Args:
         suggested: None, or what is no use, leaves no file.
@@ -40,7 +40,7 @@ def write_suggestion(suggested: SuggestedMotion | None, folder: str | Path) -> t
 
 
 def content_of(suggested: SuggestedMotion) -> dict[str, Any]:
-    """Plain values: the motion's extent at each joint, the limits kept, and what it is expected to say."""
+    """Plain values: the motion's range at each joint, its limits, and its expected information."""
     recording = suggested.recording
     pairs = zip(suggested.ties, suggested.expectation.separations, strict=True)
     ties = [
@@ -102,7 +102,7 @@ def _name(suggested: SuggestedMotion, joint: int | None) -> str | None:
 
 
 def words_of(suggested: SuggestedMotion | None, where: str) -> list[str]:
-    """Lines for a terminal: what the motion is expected to say, what no motion says, and what was not checked."""
+    """Lines for a terminal: expected information of the motion, ties that no motion breaks, and what was not checked."""
     if suggested is None:
         return ["Nothing is open that another motion could settle: none is suggested."]
     lines = [_promise(suggested, tie, k) for k, tie in enumerate(suggested.ties)]
