@@ -102,7 +102,7 @@ def _name(suggested: SuggestedMotion, joint: int | None) -> str | None:
 
 
 def words_of(suggested: SuggestedMotion | None, where: str) -> list[str]:
-    """Lines for a terminal: expected information of the motion, ties that no motion breaks, and what was not checked."""
+    """Lines for a terminal: expected information of the motion, ties that no motion breaks, what was not checked."""
     if suggested is None:
         return ["Nothing is open that another motion could settle: none is suggested."]
     lines = [_promise(suggested, tie, k) for k, tie in enumerate(suggested.ties)]
