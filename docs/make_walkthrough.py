@@ -70,7 +70,7 @@ def draw_sign(axes: Any, case: Case, result: Diagnosis) -> None:
     others = [e for e in result.state.effects if e.joint != JOINT]
     series = residual_by_recording(problem, problem.fit, others)
     v = np.concatenate([s.motion.v[:, JOINT] for s in series])
-    r = np.concatenate([s.rest[:, JOINT] for s in series])
+    r = np.concatenate([s.residual[:, JOINT] for s in series])
     axes.plot(v, r, ".", color=GREY, ms=1.5, label="residual, other effects taken off")
     x, slow = np.linspace(-2.0, 2.0, 801), float(problem.slow[JOINT])
     straight = problem.straight is not None and bool(problem.straight[JOINT])
@@ -139,7 +139,7 @@ def draw_event(axes: Any, case: Case, result: Diagnosis) -> None:
     state = result.state
     strand = residual_by_recording(state.problem, state.problem.fit, state.refit.effects)[1]
     for joint, name in enumerate(state.problem.joints):
-        axes.plot(strand.time, strand.rest[:, joint], lw=1, label=f"residual of {name}")
+        axes.plot(strand.time, strand.residual[:, joint], lw=1, label=f"residual of {name}")
     axes.axvspan(*CONTACT, color=GREY, alpha=0.25, label="hidden contact")
     for transient in state.transients:
         for edge in transient.effect.interval or ():

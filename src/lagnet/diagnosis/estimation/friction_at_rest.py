@@ -26,9 +26,9 @@ def friction_at_rest(problem: Problem, effects: Sequence[NamedEffect]) -> np.nda
         without = torque_with(motion, effects)
         fully = torque_with(replace(motion, held=np.ones(n)), effects)
         resting = ~piece.counts
-        rest = problem.reduce(piece, piece.tau - without) * resting
+        residual = problem.reduce(piece, piece.tau - without) * resting
         change = problem.reduce(piece, fully - without) * resting
-        product += np.sum(rest * change, axis=0)
+        product += np.sum(residual * change, axis=0)
         power += np.sum(change**2, axis=0)
         count += resting.sum(axis=0)
     shown = (count >= FEW) & (power > 0)

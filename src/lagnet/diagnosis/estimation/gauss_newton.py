@@ -77,8 +77,8 @@ class GaussNewton:
         effects = self.slots.named(x)
         out = []
         for piece, motion in zip(self.pieces, self.motions, strict=True):
-            rest = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
-            out.append(rest * piece.counts / self.sigma)
+            residual = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
+            out.append(residual * piece.counts / self.sigma)
         return out
 
     def error(self, x: np.ndarray) -> float:
@@ -115,10 +115,10 @@ class GaussNewton:
         if not free.any():
             return x
         lower, upper = (b[free] for b in self.slots.bounds())
-        rest = self.residuals(x)
-        error = power_of_all(rest)
+        residual = self.residuals(x)
+        error = power_of_all(residual)
         for _ in range(STEPS):
-            gram, moment = normal(self.jacobian(x, free), rest)
+            gram, moment = normal(self.jacobian(x, free), residual)
             step = bounded_step(gram, -moment, lower - x[free], upper - x[free])
             for shrink in (1.0, 0.5, 0.25, 0.1, 0.03):
                 trial = x.copy()
@@ -128,7 +128,7 @@ class GaussNewton:
                     break
             else:
                 return x
-            gain, x, rest, error = error - power_of_all(moved), trial, moved, power_of_all(moved)
+            gain, x, residual, error = error - power_of_all(moved), trial, moved, power_of_all(moved)
             if gain < DONE * error:
                 break
         return x
@@ -138,18 +138,18 @@ class GaussNewton:
 
         Residuals that are correlated in time within a block widen the intervals.
         """
-        rest, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
-        gram, _ = normal(jacobian, rest)
+        residual, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
+        gram, _ = normal(jacobian, residual)
         bread, open_ = inverse_where_told(gram)
         scores = []
-        for r, j, blocks in zip(rest, jacobian, blocks_of(self.problem, self.pieces), strict=True):
+        for r, j, blocks in zip(residual, jacobian, blocks_of(self.problem, self.pieces), strict=True):
             scores.extend(np.einsum("njk,nj->k", j[rows], r[rows]) for rows in blocks)
         table = np.array(scores)
         freedom = max(2, len(table) - 1)
         inflation = len(table) / max(1.0, len(table) - np.sqrt(x.size) - 1)
         robust = bread @ (table.T @ table) @ bread * inflation
         count = sum(p.counts.sum() for p in self.pieces)
-        plain = bread * power_of_all(rest) / max(1.0, count - x.size)
+        plain = bread * power_of_all(residual) / max(1.0, count - x.size)
         variance = np.diag(robust)
         known = variance > 1e-200  # where the data say anything of a coordinate
         open_ |= ~known & self.slots.of_bodies()

@@ -38,9 +38,9 @@ class _Tangent:
 
     def told(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Information on a body: (10, 10) with all else refitted around it, diagonal (10,) with all else known."""
-        rest = np.setdiff1d(np.arange(len(self.gram)), own)
-        cross = self.gram[np.ix_(own, rest)]
-        around = cross @ inverse(self.gram[np.ix_(rest, rest)]) @ cross.T if rest.size else 0.0
+        others = np.setdiff1d(np.arange(len(self.gram)), own)
+        cross = self.gram[np.ix_(own, others)]
+        around = cross @ inverse(self.gram[np.ix_(others, others)]) @ cross.T if others.size else 0.0
         schur = self.gram[np.ix_(own, own)] - around
         return 0.5 * (schur + schur.T), np.diag(self.gram)[own]
 

@@ -69,15 +69,15 @@ def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) ->
     could be the blur itself. Then both stay open.
     """
     hypotheses = view.equations.library.hypotheses
-    rest = tuple(k for k in own if k != index)
+    others = tuple(k for k in own if k != index)
     wider = [
         k for k in view.equations.library.local[view.joint] if hypotheses[index].effect in hypotheses[k].law.contains
     ]
-    scores = {k: view.score((*rest, k)) for k in wider if compatible(view, rest, k)}
+    scores = {k: view.score((*others, k)) for k in wider if compatible(view, others, k)}
     best = max(scores, key=lambda k: scores[k], default=None)
     if best is None or (scores[best] - view.score(own)) / np.log(10.0) < view.limits.tie_odds:
         return set()
-    return {hypotheses[best].effect} if gains_over(view, (*rest, best), best, own) else set()
+    return {hypotheses[best].effect} if gains_over(view, (*others, best), best, own) else set()
 
 
 def replacements(
@@ -86,18 +86,18 @@ def replacements(
     """Selections with another hypothesis in its place, alone, for it and a neighbour, or two in its place."""
     hypotheses = view.equations.library.hypotheses
     place = hypotheses[index].place
-    rest = tuple(k for k in own if k != index)
+    others = tuple(k for k in own if k != index)
     fresh = [k for k in view.equations.library.local[view.joint] if k not in own and hypotheses[k].place != place]
     own_name = hypotheses[index].effect
     for k in fresh:
         wider = own_name in hypotheses[k].law.contains  # fits at least as well by itself: no rival on its own
-        if not wider and compatible(view, rest, k):
-            yield (hypotheses[k].effect,), (*rest, k)
-        for gone in rest:  # one law for two
-            left = tuple(i for i in rest if i != gone)
+        if not wider and compatible(view, others, k):
+            yield (hypotheses[k].effect,), (*others, k)
+        for gone in others:  # one law for two
+            kept = tuple(i for i in others if i != gone)
             both = {own_name, hypotheses[gone].effect} <= {*hypotheses[k].law.confused_with}
-            if both and compatible(view, left, k):
-                yield (hypotheses[k].effect,), (*left, k)
+            if both and compatible(view, kept, k):
+                yield (hypotheses[k].effect,), (*kept, k)
     near = [
         k
         for k in fresh
@@ -105,18 +105,18 @@ def replacements(
     ]
     for n, k in enumerate(near):  # two laws for one
         for m in near[n + 1 :]:
-            if compatible(view, rest, k) and compatible(view, (*rest, k), m):
-                yield (hypotheses[k].effect, hypotheses[m].effect), (*rest, k, m)
+            if compatible(view, others, k) and compatible(view, (*others, k), m):
+                yield (hypotheses[k].effect, hypotheses[m].effect), (*others, k, m)
 
 
 def _arm_wide_comparison(equations: NormalEquations, found: Selection, index: int) -> Comparison:
     hypotheses = equations.library.hypotheses
-    rest = tuple(i for i in found.arm_wide if i != index)
+    others = tuple(i for i in found.arm_wide if i != index)
     odds: dict[str, float] = {}
     for k in equations.library.reaching:
         if k in found.arm_wide or hypotheses[k].place == hypotheses[index].place:
             continue
-        score = total_score(equations, (*rest, k), found)
+        score = total_score(equations, (*others, k), found)
         if np.isfinite(score):
             name = hypotheses[k].effect
             odds[name] = min(odds.get(name, np.inf), float((found.score - score) / np.log(10.0)))

@@ -61,12 +61,12 @@ def arm_wide_equals(equations: NormalEquations, found: Selection, index: int) ->
     columns that the motion does not excite.
     """
     hypotheses = equations.library.hypotheses
-    shown = equations.samples >= FEW  # of joints that rest, a few stray samples are no evidence
+    shown = equations.samples >= FEW  # of joints at rest, a few stray samples are no evidence
     equations = replace(equations, total=tuple(t * s for t, s in zip(equations.total, shown, strict=True)))
     sigma = found.sigma(equations)
     pieces = equations.samples / found.scales.inefficiency
     floor = np.maximum(1e-3 * found.scales.noise_power, 1e-300)
-    rest = [i for i in found.indices if i != index]
+    others = [i for i in found.indices if i != index]
     here = _error(equations, found.indices, sigma)
     limits = equations.limits
     same = np.maximum(
@@ -75,7 +75,7 @@ def arm_wide_equals(equations: NormalEquations, found: Selection, index: int) ->
     equal = set()
     for k in equations.library.reaching:
         if k not in found.arm_wide and hypotheses[k].joint == hypotheses[index].joint:
-            there = _error(equations, (*rest, k), sigma)
+            there = _error(equations, (*others, k), sigma)
             gap = 0.5 * np.sum(pieces * np.log(np.maximum(there, floor) / np.maximum(here, floor)))
             if gap < limits.tie_odds * np.log(10.0) or np.all(there - here <= same):
                 equal.add(hypotheses[k].effect)

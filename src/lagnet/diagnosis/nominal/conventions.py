@@ -68,8 +68,8 @@ def refuse_other_conventions(problem: Problem) -> None:
     most = BETTER * _left_by_physics(problem, motion)
     _refuse_scales(problem, motion, most)
     _refuse_other_order(problem, motion, most)
-    readings, left = _readings(problem, motion)
-    if readings and left < most:
+    readings, misfit = _readings(problem, motion)
+    if readings and misfit < most:
         lines = [line for r in readings for line in r.mapping(problem.joints[r.joint])]
         joints = ", ".join(dict.fromkeys(problem.joints[r.joint] for r in readings))
         raise DiagnosisError(
@@ -132,9 +132,9 @@ def _left_by_physics(problem: Problem, motion: Motion) -> float:
     body = nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
     recorded = _recorded(motion)
     signals = _beside_own(motion, np.concatenate([recorded[..., None], (recorded - model)[..., None], body], axis=2))
-    columns, rest = signals[..., 2:].reshape(-1, body.shape[2]), signals[..., 1].ravel()
-    fitted, *_ = np.linalg.lstsq(columns, rest, rcond=1e-9)
-    return float(np.sum((rest - columns @ fitted) ** 2)) / len(motion.time)
+    columns, residual = signals[..., 2:].reshape(-1, body.shape[2]), signals[..., 1].ravel()
+    fitted, *_ = np.linalg.lstsq(columns, residual, rcond=1e-9)
+    return float(np.sum((residual - columns @ fitted) ** 2)) / len(motion.time)
 
 
 def _mounted(problem: Problem) -> Problem:
@@ -162,11 +162,11 @@ def _refuse_other_order(problem: Problem, motion: Motion, most: float) -> None:
     moved = [j for j, k in zip(of_file, of_model, strict=True) if j != k]
     ordered = _recorded(motion).copy()
     ordered[:, of_model] = _recorded(motion)
-    left = float(_misfit(problem, replace(motion, recorded=ordered)).sum())
-    if moved and left < min(most, MENDED * _misfit(problem, motion).sum()):
-        told = ", ".join(f"tau_{problem.joints[j]} is the torque of {problem.joints[of_model[j]]}" for j in moved)
+    misfit = float(_misfit(problem, replace(motion, recorded=ordered)).sum())
+    if moved and misfit < min(most, MENDED * _misfit(problem, motion).sum()):
+        listed = ", ".join(f"tau_{problem.joints[j]} is the torque of {problem.joints[of_model[j]]}" for j in moved)
         raise DiagnosisError(
-            f"columns of torque are in another order than the model's joints: {told}",
+            f"columns of torque are in another order than the model's joints: {listed}",
             next_step="map them with --columns, or put them in order",
         )
 
@@ -176,9 +176,9 @@ def _refuse_scales(problem: Problem, motion: Motion, most: float) -> None:
     off = (alike > ALIKE) & ((factor < SCALES[0]) | (factor > SCALES[1]))
     scaled = replace(motion, recorded=_recorded(motion) / np.where(off, factor, 1.0))
     if off.any() and _misfit(problem, scaled).sum() < most:
-        told = ", ".join(f"{float(f'{factor[j]:.2g}'):g} at {problem.joints[j]}" for j in np.flatnonzero(off))
+        listed = ", ".join(f"{float(f'{factor[j]:.2g}'):g} at {problem.joints[j]}" for j in np.flatnonzero(off))
         raise DiagnosisError(
-            f"recorded torques are far from the model's by a factor: {told}",
+            f"recorded torques are far from the model's by a factor: {listed}",
             next_step="are they those of the motors before their gears, or in another unit? map them with --columns:"
             f' [scale] "tau_{problem.joints[int(np.flatnonzero(off)[0])]}" = {float(f"{1 / factor[off][0]:.2g}"):g}',
         )
@@ -195,21 +195,21 @@ def _readings(problem: Problem, motion: Motion) -> tuple[list[Reading], float]:
     found = [Reading(int(joint), sense=-1.0) for joint in reversed_torque]
     for reading in found:
         motion = reading.apply(motion)
-    left = float(_misfit(problem, motion).sum())
-    if found and left < MENDED * first:
-        return found, left
+    misfit = float(_misfit(problem, motion).sum())
+    if found and misfit < MENDED * first:
+        return found, misfit
     for _ in range(problem.n_dof):
         tried = [(float(_misfit(problem, r.apply(motion)).sum()), r) for r in _others(problem, found)]
         if not tried:
             break
         least, best = min(tried, key=lambda pair: pair[0])
-        if least > 0.9 * left:
+        if least > 0.9 * misfit:
             break
-        motion, left = best.apply(motion), least
+        motion, misfit = best.apply(motion), least
         found.append(best)
-        if left < MENDED * first:
-            return found, left
-    return [], left
+        if misfit < MENDED * first:
+            return found, misfit
+    return [], misfit
 
 
 def _others(problem: Problem, found: list[Reading]) -> Iterator[Reading]:

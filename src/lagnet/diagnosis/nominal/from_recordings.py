@@ -116,7 +116,7 @@ def _held_out(model: Any, unseen: Sequence[Recording]) -> tuple[np.ndarray, np.n
 
     conditioned = condition(unseen)
     problem = pose_problem(model, conditioned, conditioned)
-    rest = np.concatenate([problem.residual(p) for p in problem.fit])
+    residual = np.concatenate([problem.residual(p) for p in problem.fit])
     torque = np.concatenate([problem.reduce(p, p.tau) for p in problem.fit])
-    error = np.sqrt(np.mean(rest**2, axis=0))
+    error = np.sqrt(np.mean(residual**2, axis=0))
     return error, error**2 / np.maximum(np.var(torque, axis=0), 1e-18)

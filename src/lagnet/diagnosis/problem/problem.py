@@ -30,7 +30,7 @@ class Segment:
     Args:
         time: shape (n,); q, v, a, tau, load: shape (n, dof); load is the nominal torque.
         recording: index of its recording.
-        keep: rows that count after low-pass and decimation, edges left out.
+        keep: valid rows after low-pass and decimation, without edges.
         counts: shape (len(keep), dof), False where the joint rests and dry friction may take any value.
         origin: index of the fitted recording that it is a part of; None for another recording.
         columns: low-passed columns of hypotheses that were asked for already, by what they follow from.
@@ -99,7 +99,7 @@ class Problem:
 
     @cached_property
     def unseen_variance(self) -> np.ndarray:
-        """Variance of the held-out torque, shape (dof,) [N² m²]: what held-out errors are told in parts of."""
+        """Variance of the held-out torque, shape (dof,) [N² m²]: the unit of held-out nMSE."""
         torque = np.concatenate([self.reduce(p, p.tau) for p in self.holdout])
         return np.maximum(torque.var(axis=0), 1e-300)
 

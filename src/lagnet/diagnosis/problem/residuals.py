@@ -21,14 +21,14 @@ class RecordingResidual:
 
     Args:
         motion: at the samples that are kept; its recording is the fitted one that it belongs to, None for another.
-        rest: shape (n, dof), residual r of the model with its effects, low-passed [N m].
-        counts: shape (n, dof), which samples are valid: False where a joint rests.
+        residual: shape (n, dof), r of the model with its effects, low-passed [N m].
+        valid: shape (n, dof), False where a joint is at rest.
         index: of the recording among those fitted, or among those held out.
     """
 
     motion: Motion
-    rest: np.ndarray
-    counts: np.ndarray
+    residual: np.ndarray
+    valid: np.ndarray
     index: int
 
     @property
@@ -40,7 +40,7 @@ class RecordingResidual:
         """Every so many of the samples."""
         m, rows = self.motion, slice(None, None, step)
         motion = replace(m, time=m.time[rows], q=m.q[rows], v=m.v[rows], a=m.a[rows], load=m.load[rows], cache={})
-        return RecordingResidual(motion, self.rest[rows], self.counts[rows], self.index)
+        return RecordingResidual(motion, self.residual[rows], self.valid[rows], self.index)
 
 
 def residual_by_recording(
@@ -49,8 +49,8 @@ def residual_by_recording(
     """r = F(τ − τ_nominal − Σ τ_effect) of each recording, its segments joined in time."""
     parts: dict[int, list[tuple[Segment, np.ndarray]]] = {}
     for piece in pieces:
-        rest = problem.reduce(piece, piece.tau - torque_with(piece.motion(problem), effects))
-        parts.setdefault(piece.recording, []).append((piece, rest))
+        residual = problem.reduce(piece, piece.tau - torque_with(piece.motion(problem), effects))
+        parts.setdefault(piece.recording, []).append((piece, residual))
     return tuple(_joined(problem, index, found) for index, found in parts.items())
 
 
@@ -60,41 +60,43 @@ def _joined(problem: Problem, index: int, found: list[tuple[Segment, np.ndarray]
     motion = Motion(
         time, q, v, a, load, problem.slow, problem.nominal, None, None, found[0][0].origin, problem.straight
     )
-    counts = np.concatenate([p.counts for p, _ in found])
-    return RecordingResidual(motion, np.concatenate([r for _, r in found]), counts, index)
+    valid = np.concatenate([p.counts for p, _ in found])
+    return RecordingResidual(motion, np.concatenate([r for _, r in found]), valid, index)
 
 
 def left_by(problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect]) -> np.ndarray:
     """r of all segments, zero where a sample is not valid, shape (n, dof) [N m]."""
-    return np.concatenate([_left(problem, p, p.motion(problem), effects) for p in pieces])
+    return np.concatenate([_residual(problem, p, p.motion(problem), effects) for p in pieces])
 
 
 def stacked(problem: Problem, pieces: Sequence[Segment]) -> tuple[np.ndarray, np.ndarray]:
     """r = F(τ − τ_nominal) of all segments [N m] and which samples are valid, shape (n, dof) each."""
-    rest = np.concatenate([problem.residual(p) for p in pieces])
-    return rest, np.concatenate([p.counts for p in pieces])
+    residual = np.concatenate([problem.residual(p) for p in pieces])
+    return residual, np.concatenate([p.counts for p in pieces])
 
 
-def power_of(residual: np.ndarray, counts: np.ndarray, joint: int) -> float:
+def power_of(residual: np.ndarray, valid: np.ndarray, joint: int) -> float:
     """mean r_j² over the valid samples of a joint [N² m²]."""
-    return float(np.sum((residual[:, joint] * counts[:, joint]) ** 2) / max(1, counts[:, joint].sum()))
+    return float(np.sum((residual[:, joint] * valid[:, joint]) ** 2) / max(1, valid[:, joint].sum()))
 
 
 def predicted_error(
     problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect], measured_torque: bool = False
 ) -> float:
-    """Σ_j mean r_j² / var τ_j: squared error that effects leave, in shares of each joint's variance, summed.
+    """Σ_j mean r_j² / var τ_j: squared residual of a model with effects over each joint's variance, summed.
 
     Args:
         measured_torque: whether effects that follow from the measured torque may use it; a prediction has none.
     """
-    rests = []
+    residuals = []
     for piece in pieces:
         motion = piece.motion(problem)
-        rests.append(_left(problem, piece, motion if measured_torque else replace(motion, recorded=None), effects))
+        residuals.append(
+            _residual(problem, piece, motion if measured_torque else replace(motion, recorded=None), effects)
+        )
     moving = problem.scale > 1e-9 * np.max(problem.scale)
-    return float(np.sum(np.mean(np.concatenate(rests)[:, moving] ** 2, axis=0) / problem.scale[moving] ** 2))
+    return float(np.sum(np.mean(np.concatenate(residuals)[:, moving] ** 2, axis=0) / problem.scale[moving] ** 2))
 
 
-def _left(problem: Problem, piece: Segment, motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray:
+def _residual(problem: Problem, piece: Segment, motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray:
     return problem.reduce(piece, piece.tau - torque_with(motion, effects)) * piece.counts

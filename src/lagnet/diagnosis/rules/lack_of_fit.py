@@ -137,10 +137,10 @@ class LackOfFit(RejectionRule):
         return {j: s for j, s in shares.items() if any(x > self.predictable for x in _predicted(candidate, j))}
 
 
-def outshines(part: HoldoutGain, stands: float, *left: Shares) -> bool:
+def outshines(part: HoldoutGain, stands: float, *remainders: Shares) -> bool:
     """Whether an effect explains many times the residual at its strongest joint, both in the fit and held out."""
     most = max(part.at_joints, key=lambda j: part.shares[j])
-    return bool(part.shares[most] >= stands * max(shares.get(most, 0.0) for shares in left))
+    return bool(part.shares[most] >= stands * max(shares.get(most, 0.0) for shares in remainders))
 
 
 def left_shares(candidate: Candidate, part: Part) -> Shares:
@@ -157,11 +157,11 @@ def _predicted(candidate: Candidate, joint: int) -> Iterator[float]:
     """Predictable shares of a joint's residual: held out, and in every second part of the fit."""
     problem, seed = candidate.problem, candidate.seed
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
-    rest, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
+    residual, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
     valid = np.concatenate([p.counts for p in problem.fit])[:, joint]
-    yield predictability_of(seen, rest, valid, fresh, test, seed).share
+    yield predictability_of(seen, residual, valid, fresh, test, seed).share
     one, other = every_second_part(len(valid))
-    yield predictability_of(seen.only(one), rest[one], valid[one], seen.only(other), rest[other], seed).share
+    yield predictability_of(seen.only(one), residual[one], valid[one], seen.only(other), residual[other], seed).share
 
 
 def _power(x: np.ndarray) -> np.ndarray:

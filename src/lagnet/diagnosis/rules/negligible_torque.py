@@ -59,9 +59,9 @@ class NegligibleTorque(RejectionRule):
         least = np.maximum(limits.least_torque**2 * problem.scale**2, limits.least_of_residual * nominal)
         out = []
         for n in range(len(effects)):
-            rest = (*effects[:n], *effects[n + 1 :])
+            others = (*effects[:n], *effects[n + 1 :])
             alone = zip(pieces, motions, together, strict=True)
-            parts = [problem.reduce(p, t - torque_with(m, rest)) for p, m, t in alone]
+            parts = [problem.reduce(p, t - torque_with(m, others)) for p, m, t in alone]
             out.append(float(np.max(_mean_square(parts) / least)))
         return out
 

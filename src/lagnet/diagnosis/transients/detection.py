@@ -56,7 +56,7 @@ def detect_events(
     if not is_robot_model(problem.nominal):
         return Scan((), power, 1.0)
     law = ContactForce()
-    sums = [run_up(law.relaxed(s.motion), s.rest * s.counts, s.counts / power) for s, _ in all_series]
+    sums = [run_up(law.relaxed(s.motion), s.residual * s.valid, s.valid / power) for s, _ in all_series]
     shortest = max(FEW, round(SHORTEST * _rate([s for s, _ in all_series])))
     looked = _closest_looks(sums, shortest, stands_out)
     events = [_spell(all_series[n], start, stop, gain) for n, start, stop, gain in looked.best]
@@ -79,8 +79,8 @@ def _usual_power(all_series: Sequence[RecordingResidual]) -> np.ndarray:
     length = max(FEW, round(BLOCK * _rate(all_series)))
     for s in all_series:
         for rows in np.array_split(np.arange(len(s.time)), max(1, len(s.time) // length)):
-            count = s.counts[rows].sum(axis=0)
-            mean = np.sum((s.rest[rows] * s.counts[rows]) ** 2, axis=0) / np.maximum(count, 1)
+            count = s.valid[rows].sum(axis=0)
+            mean = np.sum((s.residual[rows] * s.valid[rows]) ** 2, axis=0) / np.maximum(count, 1)
             blocks.append(np.where(count >= FEW, mean, np.nan))
     table = np.array(blocks)
     known = ~np.isnan(table).all(axis=0)

@@ -32,8 +32,8 @@ class EventFit:
         effect: with its interval and recording.
         odds: log10 odds over the rival; None where there is none.
         rival: the other law.
-        left: share of the power inside beyond noise that the law leaves, 0 to 1.
-        over_usual: power that the law leaves inside, over what is usually left in the recordings.
+        left: residual power inside beyond noise with the law over that without, 0 to 1.
+        over_usual: residual power inside with the law over the usual residual power of the recordings.
         gains: shape (dof,), log likelihood that the law gains inside, joint by joint [nats].
         without, with_it: nMSE inside the event, averaged over the joints that it moves, on parts that were not fitted.
         tie_odds: log10 odds below which the two are tied.
@@ -106,9 +106,9 @@ def _starts(near: Problem, event: EventInterval, power: np.ndarray) -> list[Name
     (series,) = residual_by_recording(near, near.fit, ())
     rows = _inside(series, event.start, event.end)
     law, motion = ContactForce(), _cut(series, rows).motion
-    weight = (series.counts[rows] / power)[:, :, None]
+    weight = (series.valid[rows] / power)[:, :, None]
     columns = law.relaxed(motion)
-    contact = law.nearest(_solve(columns, columns * weight, series.rest[rows]))
+    contact = law.nearest(_solve(columns, columns * weight, series.residual[rows]))
     interval = _whole(near, series, event)
     out = [NamedEffect(law.name, None, contact, interval, event.recording)]
     load = _load_like(contact, np.asarray(motion.bodies.gravity, dtype=float))
@@ -133,15 +133,15 @@ def _load_like(contact: Values, gravity: np.ndarray) -> Values | None:
     return {"m": mass, **centre, **moments}
 
 
-def _solve(columns: np.ndarray, weighted: np.ndarray, rest: np.ndarray) -> np.ndarray:
+def _solve(columns: np.ndarray, weighted: np.ndarray, residual: np.ndarray) -> np.ndarray:
     gram = np.einsum("njk,njl->kl", weighted, columns)
-    return ridge_solve(gram, np.einsum("njk,nj->k", weighted, rest), RIDGE)
+    return ridge_solve(gram, np.einsum("njk,nj->k", weighted, residual), RIDGE)
 
 
 def _misfit(near: Problem, fitted: Refit, sigma: np.ndarray) -> float:
     """Half the weighted squared error with the fitted effects [nats]."""
     (series,) = residual_by_recording(near, near.fit, fitted.effects)
-    return 0.5 * float(np.sum((series.rest * series.counts / sigma) ** 2))
+    return 0.5 * float(np.sum((series.residual * series.valid / sigma) ** 2))
 
 
 def _inside(series: RecordingResidual, start: float, end: float) -> np.ndarray:
@@ -151,7 +151,7 @@ def _inside(series: RecordingResidual, start: float, end: float) -> np.ndarray:
 def _cut(series: RecordingResidual, rows: np.ndarray) -> RecordingResidual:
     m = series.motion
     motion = replace(m, time=m.time[rows], q=m.q[rows], v=m.v[rows], a=m.a[rows], load=m.load[rows], cache={})
-    return RecordingResidual(motion, series.rest[rows], series.counts[rows], series.index)
+    return RecordingResidual(motion, series.residual[rows], series.valid[rows], series.index)
 
 
 def _left(near: Problem, series: RecordingResidual, effect: NamedEffect, scan: Scan) -> tuple[float, float, np.ndarray]:
@@ -159,10 +159,12 @@ def _left(near: Problem, series: RecordingResidual, effect: NamedEffect, scan: S
     (after,) = residual_by_recording(near, near.fit, (effect,))
     start, end = effect.interval or (0.0, 0.0)
     rows = _inside(series, start, end)
-    noise = max(1.0, float(series.counts[rows].sum()))
-    before, rest = (np.sum((s.rest[rows] * s.counts[rows]) ** 2, axis=0) / scan.power for s in (series, after))
-    share = float(np.clip((rest.sum() - noise) / max(before.sum() - noise, 1e-300), 0.0, 1.0))
-    return share, float(rest.sum()) / noise, 0.5 * (before - rest) / scan.inflation
+    noise = max(1.0, float(series.valid[rows].sum()))
+    before, after_power = (
+        np.sum((s.residual[rows] * s.valid[rows]) ** 2, axis=0) / scan.power for s in (series, after)
+    )
+    share = float(np.clip((after_power.sum() - noise) / max(before.sum() - noise, 1e-300), 0.0, 1.0))
+    return share, float(after_power.sum()) / noise, 0.5 * (before - after_power) / scan.inflation
 
 
 def _unseen(near: Problem, series: RecordingResidual, effect: NamedEffect) -> tuple[float, float]:
@@ -171,15 +173,15 @@ def _unseen(near: Problem, series: RecordingResidual, effect: NamedEffect) -> tu
     slack = SMEAR / near.bandwidth
     inner = _inside(series, start + slack, end - slack)
     part = _cut(series, inner if inner.size > 2 * BLOCKS else _inside(series, start, end))
-    columns, rest = _columns(effect, part)
-    weight = part.counts / near.scale**2
-    error = np.zeros_like(rest)
-    for rows in np.array_split(np.arange(len(rest)), BLOCKS):
-        others = np.setdiff1d(np.arange(len(rest)), rows)
-        theta = _solve(columns[others], columns[others] * weight[others][:, :, None], rest[others])
-        error[rows] = rest[rows] - columns[rows] @ theta
-    count = np.maximum(part.counts.sum(axis=0), 1)
-    without, with_it = (np.sum((x * part.counts) ** 2, axis=0) / count / near.scale**2 for x in (part.rest, error))
+    columns, residual = _columns(effect, part)
+    weight = part.valid / near.scale**2
+    error = np.zeros_like(residual)
+    for rows in np.array_split(np.arange(len(residual)), BLOCKS):
+        others = np.setdiff1d(np.arange(len(residual)), rows)
+        theta = _solve(columns[others], columns[others] * weight[others][:, :, None], residual[others])
+        error[rows] = residual[rows] - columns[rows] @ theta
+    count = np.maximum(part.valid.sum(axis=0), 1)
+    without, with_it = (np.sum((x * part.valid) ** 2, axis=0) / count / near.scale**2 for x in (part.residual, error))
     moved = without > near.limits.least_ratio * with_it
     at = np.flatnonzero(moved) if moved.any() else np.arange(len(without))
     return float(np.mean(without[at])), float(np.mean(with_it[at]))
@@ -188,7 +190,7 @@ def _unseen(near: Problem, series: RecordingResidual, effect: NamedEffect) -> tu
 def _columns(effect: NamedEffect, part: RecordingResidual) -> tuple[np.ndarray, np.ndarray]:
     """Columns of the force, or of mass and first moment, with all other parameters of the law as fitted."""
     if effect.effect == ContactForce.name:
-        return ContactForce().columns(part.motion, None, effect.values), part.rest
+        return ContactForce().columns(part.motion, None, effect.values), part.residual
     law = Payload()
     columns = law.columns(part.motion, None, {})
-    return columns[:, :, :4], part.rest - columns[:, :, 4:] @ law.coordinates(effect.values)[4:]
+    return columns[:, :, :4], part.residual - columns[:, :, 4:] @ law.coordinates(effect.values)[4:]

@@ -14,12 +14,12 @@ def carry_on(
     problem: Problem, passing: Sequence[Transient], unnamed: Sequence[EventInterval]
 ) -> tuple[tuple[Transient, ...], tuple[EventInterval, ...]]:
     """Effects that continue into the held-out part of their recording, and the events that they do not explain."""
-    out, left = [], list(unnamed)
+    out, remaining = [], list(unnamed)
     for one in passing:
-        found = [s for s in left if _continues(problem, one, s)]
+        found = [s for s in remaining if _continues(problem, one, s)]
         out.append(_until(one, found[0].end, problem.rate) if found else one)
-        left = [s for s in left if s not in found]
-    return tuple(out), tuple(left)
+        remaining = [s for s in remaining if s not in found]
+    return tuple(out), tuple(remaining)
 
 
 def _continues(problem: Problem, passing: Transient, event: EventInterval) -> bool:

@@ -53,18 +53,18 @@ class Running:
         return start, stop
 
 
-def run_up(columns: np.ndarray, rest: np.ndarray, weight: np.ndarray) -> Running:
+def run_up(columns: np.ndarray, residual: np.ndarray, weight: np.ndarray) -> Running:
     """Sums over the samples of one recording.
 
     Args:
         columns: shape (n, dof, k).
-        rest: shape (n, dof).
+        residual: shape (n, dof).
         weight: shape (n, dof), one over the variance of each entry, 0 where it does not count.
     """
     weighted = columns * weight[:, :, None]
     gram = np.einsum("njk,njl->nkl", weighted, columns)
-    moment = np.einsum("njk,nj->nk", weighted, rest)
-    return Running(*(_summed(x) for x in (gram, moment, np.sum(weight * rest**2, axis=1))))
+    moment = np.einsum("njk,nj->nk", weighted, residual)
+    return Running(*(_summed(x) for x in (gram, moment, np.sum(weight * residual**2, axis=1))))
 
 
 def _summed(x: np.ndarray) -> np.ndarray:

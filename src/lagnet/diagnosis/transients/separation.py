@@ -115,4 +115,4 @@ def _shares(problem: Problem, persistent: Sequence[NamedEffect], passing: Sequen
 
 def _power(problem: Problem, effects: Sequence[NamedEffect]) -> float:
     all_series = residual_by_recording(problem, problem.fit, effects)
-    return max(float(sum(np.sum((s.rest * s.counts / problem.scale) ** 2) for s in all_series)), 1e-300)
+    return max(float(sum(np.sum((s.residual * s.valid / problem.scale) ** 2) for s in all_series)), 1e-300)

@@ -60,9 +60,9 @@ def _table(
 ) -> np.ndarray:
     """Time, residual and friction torque at the valid samples, zero elsewhere, shape (3, len(keep), dof)."""
     motion = piece.motion(problem)
-    rest = problem.reduce(piece, piece.tau - torque_with(motion, effects)) * piece.counts
+    residual = problem.reduce(piece, piece.tau - torque_with(motion, effects)) * piece.counts
     friction = problem.reduce(piece, _added(motion, rubbing)) * piece.counts
-    return np.stack([np.broadcast_to(piece.time[piece.keep][:, None], rest.shape), rest, friction])
+    return np.stack([np.broadcast_to(piece.time[piece.keep][:, None], residual.shape), residual, friction])
 
 
 def _added(motion: Motion, rubbing: Sequence[NamedEffect]) -> np.ndarray:
@@ -71,20 +71,20 @@ def _added(motion: Motion, rubbing: Sequence[NamedEffect]) -> np.ndarray:
 
 def _trend(table: np.ndarray, joint: int, recording: int, least_share: float) -> Drift | None:
     """The change of a joint's friction over a recording, if it exceeds its scatter; table of shape (3, n)."""
-    time, rest, friction = table
+    time, residual, friction = table
     share = (time - time[0]) / max(float(np.ptp(time)), 1e-9)
     part = np.minimum((share * PARTS).astype(int), PARTS - 1)
     weight = np.bincount(part, friction**2, PARTS)
     if np.any(weight < 0.1 * weight.mean()) or not weight.mean() > 0:
         return None  # the joint rests for a part of the time
-    level = np.bincount(part, friction * rest, PARTS) / weight
+    level = np.bincount(part, friction * residual, PARTS) / weight
     line = np.column_stack([np.ones(PARTS), (np.arange(PARTS) + 0.5) / PARTS - 0.5])
     inverse = np.linalg.inv(line.T @ (line * weight[:, None]))
     start, change = inverse @ (line.T @ (weight * level))
     scatter = float(np.sum(weight * (level - line @ [start, change]) ** 2)) / (PARTS - 2)
     error = float(np.sqrt(inverse[1, 1] * scatter))
-    explained = np.sum(rest**2) - np.sum((rest - friction * (start + change * (share - 0.5))) ** 2)
-    if abs(change) < max(CERTAIN * error, NOTICED) or explained < least_share * np.sum(rest**2):
+    explained = np.sum(residual**2) - np.sum((residual - friction * (start + change * (share - 0.5))) ** 2)
+    if abs(change) < max(CERTAIN * error, NOTICED) or explained < least_share * np.sum(residual**2):
         return None
     quarters = np.add.reduceat(weight * level, np.arange(0, PARTS, 2)) / np.add.reduceat(weight, np.arange(0, PARTS, 2))
     return Drift(joint, recording, float(change), error, tuple(float(1.0 + x) for x in quarters))

@@ -21,7 +21,7 @@ class Remainder:
     """Residual r of the corrected model, with the signals that may predict it.
 
     Args:
-        fit, holdout: (residual, counts), each of shape (n, dof).
+        fit, holdout: (residual, valid), each of shape (n, dof).
         seen, unseen: what a flexible model may look at, on the same samples.
     """
 
@@ -56,8 +56,8 @@ def remainder_of(problem: Problem, effects: Sequence[NamedEffect]) -> Remainder:
     for pieces in (problem.fit, problem.holdout):
         blind = [replace(p.motion(problem), recorded=None) for p in pieces]  # a prediction has no recorded torque
         predicted = [torque_with(m, effects) for m in blind]
-        rest = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
-        parts.append((np.concatenate(rest), np.concatenate([p.counts for p in pieces])))
+        residual = [problem.reduce(p, p.tau - t) for p, t in zip(pieces, predicted, strict=True)]
+        parts.append((np.concatenate(residual), np.concatenate([p.counts for p in pieces])))
     seen, unseen = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     return Remainder(parts[0], parts[1], seen, unseen)
 
@@ -87,9 +87,9 @@ def _joint(problem: Problem, after: Remainder, noise: float, seed: int, joint: i
 
 def _within_fit(after: Remainder) -> Remainder:
     """The fitted motion alone: every second part of it is predicted from the others."""
-    rest, counts = after.fit
-    seen, unseen = every_second_part(len(rest))
-    halves = [(rest[rows], counts[rows]) for rows in (seen, unseen)]
+    residual, valid = after.fit
+    seen, unseen = every_second_part(len(residual))
+    halves = [(residual[rows], valid[rows]) for rows in (seen, unseen)]
     return Remainder(halves[0], halves[1], after.seen.only(seen), after.seen.only(unseen))
 
 
@@ -100,12 +100,12 @@ def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
-    (rest, counts), (test, test_counts) = after.fit, after.holdout
-    seen, truth = rest[:, joint], test[:, joint] * test_counts[:, joint]
-    ceiling = predictability_of(after.seen, seen, counts[:, joint], after.unseen, truth, seed)
+    (residual, valid), (test, test_valid) = after.fit, after.holdout
+    seen, truth = residual[:, joint], test[:, joint] * test_valid[:, joint]
+    ceiling = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
     shape = None
     if ceiling.depends_on:
-        signals = (after.seen.only(counts[:, joint]), after.unseen.only(test_counts[:, joint]))
-        rests = (seen[counts[:, joint]], test[test_counts[:, joint], joint])
-        shape = find_shape(signals, rests, ceiling.depends_on, slow)
+        signals = (after.seen.only(valid[:, joint]), after.unseen.only(test_valid[:, joint]))
+        residuals = (seen[valid[:, joint]], test[test_valid[:, joint], joint])
+        shape = find_shape(signals, residuals, ceiling.depends_on, slow)
     return ceiling, shape
