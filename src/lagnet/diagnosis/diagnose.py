@@ -100,7 +100,7 @@ def diagnose(
     Raises:
         DiagnosisError: no recording, joints that are not the model's, or recordings in another convention (signs,
             units, zeros of joints) than the model.
-        RecordingError: data that would be told as physics: dead or stuck channels, another clock or order of joints.
+        RecordingError: data that would be named as physics: dead or stuck channels, another clock or order of joints.
     """
     _check(recordings, robot, holdout)
     data = screened_for((*recordings, *(holdout or ())), robot)

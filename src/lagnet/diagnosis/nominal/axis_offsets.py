@@ -40,7 +40,7 @@ def settle_axis_offsets(
     Args:
         robot: any model; all but a learned serial chain are given back as they are.
         recordings, holdout: of the real arm, to fit and to confirm.
-        missed: shape (dof,), torque that the model is known to miss [N m]; None: what its training left.
+        missed: shape (dof,), torque that the model is known to miss [N m]; None: the residual of its training.
         seed: of the starts.
     """
     if not isinstance(robot, SerialChain) or robot.n_dof < 2:
@@ -81,34 +81,34 @@ class _Load:
         columns, lacks = ((x / noise[:, None]).reshape(-1, x.shape[-1]) for x in (self._columns(move), self._lacks))
         return scaled_weights(columns, lacks[:, 0], RANK)
 
-    def left(self, body: np.ndarray, move: np.ndarray) -> np.ndarray:
+    def residual(self, body: np.ndarray, move: np.ndarray) -> np.ndarray:
         """r − Y_last π: residual with this body, shape (n, dof) [N m]."""
         return self._lacks[..., 0] - self._columns(move) @ body
 
     def cost(self, body: np.ndarray, move: np.ndarray, noise: np.ndarray) -> float:
         """mean (r − Y_last π)² / σ²: mean square residual over the noise variance."""
-        return float(np.mean((self.left(body, move) / noise) ** 2))
+        return float(np.mean((self.residual(body, move) / noise) ** 2))
 
 
 def _fitted(shape: OpenShape, load: _Load, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Move of the axes along the open directions, and the noise of each joint that it leaves."""
+    """Move of the axes along the open directions, and the root mean square residual of each joint."""
     move = np.zeros(shape.sureness.size)
     noise = load.usual
 
-    def rest(at: np.ndarray) -> np.ndarray:
-        left = load.left(load.body(at, noise), at) / noise
-        return np.concatenate([left.ravel(), shape.sureness * at, shape.reach(at)])
+    def residuals(at: np.ndarray) -> np.ndarray:
+        scaled = load.residual(load.body(at, noise), at) / noise
+        return np.concatenate([scaled.ravel(), shape.sureness * at, shape.reach(at)])
 
     for _ in range(ROUNDS):
         starts = [move, *(move + SPREAD * rng.normal(size=(STARTS - 1, move.size)))]
-        ends = [least_squares(rest, start, max_nfev=40) for start in starts]
+        ends = [least_squares(residuals, start, max_nfev=40) for start in starts]
         move = min(ends, key=lambda end: end.cost).x
-        noise = _noise(load.left(load.body(move, noise), move))
+        noise = _noise(load.residual(load.body(move, noise), move))
     return move, noise
 
 
-def _noise(left: np.ndarray) -> np.ndarray:
-    size = np.sqrt(np.mean(left**2, axis=0))
+def _noise(residual: np.ndarray) -> np.ndarray:
+    size = np.sqrt(np.mean(residual**2, axis=0))
     return np.maximum(size, 1e-6 * max(float(size.max()), 1e-12))
 
 

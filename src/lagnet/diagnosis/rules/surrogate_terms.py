@@ -47,8 +47,8 @@ class _Side:
         """Power above the noise."""
         return float(np.mean(self.wanted**2)) - self.noise
 
-    def left(self, columns: np.ndarray, weights: np.ndarray) -> float:
-        """Share of the mismatch that weighted columns leave."""
+    def residual_share(self, columns: np.ndarray, weights: np.ndarray) -> float:
+        """(mean |r − X w|² − σ²) over the mismatch, the residual share with columns X of weights w."""
         return (float(np.mean((self.wanted - columns @ weights) ** 2)) - self.noise) / self.mismatch
 
 
@@ -78,13 +78,13 @@ class SurrogateTerms(RejectionRule):
         asked = [k for k, e in enumerate(candidate.effects) if effect_named(e.effect).plain_terms]
         joints, least = range(candidate.problem.n_dof) if asked else (), candidate.limits.above_noise
         torques = [_torques(candidate, part) for part in ("fit", "holdout")] if asked else []
-        left = [j for j in joints if self._is_left(torques, j, candidate.noise[j], least)]
-        sides = {j: _sides(candidate.problem, torques, j, candidate.noise[j]) for j in left}
+        unexplained = [j for j in joints if self._is_unexplained(torques, j, candidate.noise[j], least)]
+        sides = {j: _sides(candidate.problem, torques, j, candidate.noise[j]) for j in unexplained}
         out = []
         for k in asked if sides else ():
             most = effect_named(candidate.effects[k].effect).plain_terms
-            found = [x for j in left if (x := self._replaced(*sides[j], k, most)) is not None]
-            if found and not self._speaks_elsewhere(torques, k, candidate.noise, least):
+            found = [x for j in unexplained if (x := self._replaced(*sides[j], k, most)) is not None]
+            if found and not self._explains_elsewhere(torques, k, candidate.noise, least):
                 detail = f"{most} plain terms, such as another joint's angle, leave {min(found):.2g} of what it leaves"
                 out.append(self.rejection(candidate, candidate.indices[k], min(found), self.most_left, detail))
         return tuple(out)
@@ -93,43 +93,43 @@ class SurrogateTerms(RejectionRule):
         """E(terms in the place of effect k) / E(effect k) for up to so many terms; None: they do not replace it."""
         others = [i for i in range(fit.names.shape[1]) if i != k and np.any(fit.names[:, i])]
         kept = (fit.names[:, others], unseen.names[:, others])
-        alone = _left(fit, unseen, *kept)
+        alone = _residual_shares(fit, unseen, *kept)
         name = (fit.names[:, [k]], unseen.names[:, [k]])
-        with_name = _left(fit, unseen, *map(np.hstack, zip(kept, name, strict=True)))
+        with_name = _residual_shares(fit, unseen, *map(np.hstack, zip(kept, name, strict=True)))
         if np.any(alone - with_name < self.material):
             return None
         for count in range(1, most + 1):
             chosen = _chosen(kept[0], fit.terms, fit.wanted, count)
             placed = [np.hstack([a, b[:, chosen]]) for a, b in zip(kept, (fit.terms, unseen.terms), strict=True)]
-            instead = _left(fit, unseen, *placed)
-            beside = _left(fit, unseen, *map(np.hstack, zip(placed, name, strict=True)))
+            instead = _residual_shares(fit, unseen, *placed)
+            beside = _residual_shares(fit, unseen, *map(np.hstack, zip(placed, name, strict=True)))
             needless = np.all(instead - beside <= self.nothing * (alone - with_name))
             if np.all(instead <= self.most_left * with_name) and needless:
                 return float(np.max(instead / np.maximum(with_name, 1e-300)))
         return None
 
-    def _is_left(self, torques: list[list[np.ndarray]], joint: int, noise: float, least: float) -> bool:
+    def _is_unexplained(self, torques: list[list[np.ndarray]], joint: int, noise: float, least: float) -> bool:
         """Whether a joint has a residual above the noise and the least share, in the fit and held out."""
         shares = [_shares(side, joint, noise, least) for side in torques]
         return all(above and share > self.little for share, above in shares)
 
-    def _speaks_elsewhere(self, torques: list[list[np.ndarray]], k: int, noise: np.ndarray, least: float) -> bool:
-        """Whether the effect explains some joint that has no residual to speak of, in the fit and held out."""
+    def _explains_elsewhere(self, torques: list[list[np.ndarray]], k: int, noise: np.ndarray, least: float) -> bool:
+        """Whether the effect explains some joint with a negligible residual, in the fit and held out."""
 
         def explains(side: list[np.ndarray], joint: int) -> bool:
-            wanted, left, named = (side[i][:, joint] for i in (0, 1, k + 2))
+            wanted, residual, named = (side[i][:, joint] for i in (0, 1, k + 2))
             share, above = _shares(side, joint, noise[joint], least)
-            gain = float(np.mean((left + named) ** 2) - np.mean(left**2))
+            gain = float(np.mean((residual + named) ** 2) - np.mean(residual**2))
             settled = share <= self.little or not above
             return settled and gain > self.material * max(float(np.mean(wanted**2)) - noise[joint] ** 2, 0.0) > 0
 
         return any(all(explains(side, j) for side in torques) for j in range(noise.size))
 
 
-def _left(fit: _Side, unseen: _Side, fitted: np.ndarray, there: np.ndarray) -> np.ndarray:
+def _residual_shares(fit: _Side, unseen: _Side, fitted: np.ndarray, there: np.ndarray) -> np.ndarray:
     """Residual shares in the fit and held out of columns with weights of the fit."""
     weights = scaled_weights(fitted, fit.wanted, RANK)
-    return np.array([fit.left(fitted, weights), unseen.left(there, weights)])
+    return np.array([fit.residual_share(fitted, weights), unseen.residual_share(there, weights)])
 
 
 def _torques(candidate: Candidate, part: Part) -> list[np.ndarray]:
@@ -150,9 +150,9 @@ def _chosen(kept: np.ndarray, terms: np.ndarray, wanted: np.ndarray, count: int)
     size = np.linalg.norm(terms, axis=0)
     for _ in range(count):
         basis = np.linalg.qr(np.hstack([kept, terms[:, chosen]]))[0]
-        rest, fresh = wanted - basis @ (basis.T @ wanted), terms - basis @ (basis.T @ terms)
-        new = np.linalg.norm(fresh, axis=0)
-        gain = np.where(new > NEW * size, np.abs(fresh.T @ rest) / np.where(new > 0, new, 1.0), 0.0)
+        residual, added = wanted - basis @ (basis.T @ wanted), terms - basis @ (basis.T @ terms)
+        new = np.linalg.norm(added, axis=0)
+        gain = np.where(new > NEW * size, np.abs(added.T @ residual) / np.where(new > 0, new, 1.0), 0.0)
         chosen.append(int(np.argmax(gain)))
     return chosen
 

@@ -59,11 +59,11 @@ def detect_events(
     sums = [run_up(law.relaxed(s.motion), s.residual * s.valid, s.valid / power) for s, _ in all_series]
     shortest = max(FEW, round(SHORTEST * _rate([s for s, _ in all_series])))
     looked = _closest_looks(sums, shortest, stands_out)
-    events = [_spell(all_series[n], start, stop, gain) for n, start, stop, gain in looked.best]
+    events = [_event(all_series[n], start, stop, gain) for n, start, stop, gain in looked.best]
     return Scan(tuple(events), power, looked.inflation)
 
 
-def _spell(series: tuple[RecordingResidual, bool], start: int, stop: int, gain: float) -> EventInterval:
+def _event(series: tuple[RecordingResidual, bool], start: int, stop: int, gain: float) -> EventInterval:
     (one, held_out), time = series, series[0].time
     return EventInterval(one.index, held_out, float(time[start]), float(time[stop - 1]), gain)
 

@@ -32,7 +32,7 @@ class EventFit:
         effect: with its interval and recording.
         odds: log10 odds over the rival; None where there is none.
         rival: the other law.
-        left: residual power inside beyond noise with the law over that without, 0 to 1.
+        residual_share: residual power inside beyond noise with the law over that without, 0 to 1.
         over_usual: residual power inside with the law over the usual residual power of the recordings.
         gains: shape (dof,), log likelihood that the law gains inside, joint by joint [nats].
         without, with_it: nMSE inside the event, averaged over the joints that it moves, on parts that were not fitted.
@@ -42,7 +42,7 @@ class EventFit:
     effect: NamedEffect
     odds: float | None
     rival: str | None
-    left: float
+    residual_share: float
     over_usual: float
     gains: np.ndarray
     without: float
@@ -84,7 +84,12 @@ def fit_event(problem: Problem, persistent: Sequence[NamedEffect], event: EventI
     odds = float((costs[order[1]] - costs[order[0]]) / np.log(10.0)) if len(fits) > 1 else None
     (series,) = residual_by_recording(near, near.fit, ())
     return EventFit(
-        best, odds, rival, *_left(near, series, best, scan), *_unseen(near, series, best), near.limits.tie_odds
+        best,
+        odds,
+        rival,
+        *_residual_power(near, series, best, scan),
+        *_unseen(near, series, best),
+        near.limits.tie_odds,
     )
 
 
@@ -154,7 +159,9 @@ def _cut(series: RecordingResidual, rows: np.ndarray) -> RecordingResidual:
     return RecordingResidual(motion, series.residual[rows], series.valid[rows], series.index)
 
 
-def _left(near: Problem, series: RecordingResidual, effect: NamedEffect, scan: Scan) -> tuple[float, float, np.ndarray]:
+def _residual_power(
+    near: Problem, series: RecordingResidual, effect: NamedEffect, scan: Scan
+) -> tuple[float, float, np.ndarray]:
     """E(law)/E(0) inside the event, E(law) over the usual power, and the gain at each joint [nats]."""
     (after,) = residual_by_recording(near, near.fit, (effect,))
     start, end = effect.interval or (0.0, 0.0)

@@ -11,30 +11,30 @@ from lagnet.diagnosis.transients.transient import Transient
 
 
 def carry_on(
-    problem: Problem, passing: Sequence[Transient], unnamed: Sequence[EventInterval]
+    problem: Problem, transients: Sequence[Transient], unnamed: Sequence[EventInterval]
 ) -> tuple[tuple[Transient, ...], tuple[EventInterval, ...]]:
     """Effects that continue into the held-out part of their recording, and the events that they do not explain."""
     out, remaining = [], list(unnamed)
-    for one in passing:
+    for one in transients:
         found = [s for s in remaining if _continues(problem, one, s)]
         out.append(_until(one, found[0].end, problem.rate) if found else one)
         remaining = [s for s in remaining if s not in found]
     return tuple(out), tuple(remaining)
 
 
-def _continues(problem: Problem, passing: Transient, event: EventInterval) -> bool:
+def _continues(problem: Problem, transient: Transient, event: EventInterval) -> bool:
     """Whether a held-out event begins where the fitted part of the effect's recording ends with the effect."""
-    fitted = [p for p in problem.fit if p.recording == passing.effect.recording]
-    held = [p for p in problem.holdout if p.recording == event.recording and p.origin == passing.effect.recording]
-    if not (event.held_out and fitted and held and passing.effect.interval):
+    fitted = [p for p in problem.fit if p.recording == transient.effect.recording]
+    held = [p for p in problem.holdout if p.recording == event.recording and p.origin == transient.effect.recording]
+    if not (event.held_out and fitted and held and transient.effect.interval):
         return False
     slack = SMEAR / problem.bandwidth
-    to_the_end = passing.effect.interval[1] > fitted[-1].time[fitted[-1].keep[-1]] - slack
+    to_the_end = transient.effect.interval[1] > fitted[-1].time[fitted[-1].keep[-1]] - slack
     return bool(to_the_end and event.start < held[0].time[held[0].keep[0]] + slack)
 
 
-def _until(passing: Transient, end: float, rate: float) -> Transient:
+def _until(transient: Transient, end: float, rate: float) -> Transient:
     """The same effect with a later end, known to one period of the scanned samples."""
-    start = passing.effect.interval[0] if passing.effect.interval else end
-    intervals = {**passing.intervals, "t1": (end - 1.0 / rate, end + 1.0 / rate)}
-    return replace(passing, effect=replace(passing.effect, interval=(start, end)), intervals=intervals)
+    start = transient.effect.interval[0] if transient.effect.interval else end
+    intervals = {**transient.intervals, "t1": (end - 1.0 / rate, end + 1.0 / rate)}
+    return replace(transient, effect=replace(transient.effect, interval=(start, end)), intervals=intervals)

@@ -18,7 +18,7 @@ from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import EDGES, NamedEffect
 
-LEFT = 0.25  # of the power inside an interval: a law with a larger residual is rejected
+MOST_RESIDUAL = 0.25  # of the power inside an interval: a law with a larger residual is rejected
 HELPS = 0.5  # of the error inside an interval that must remain at most, on parts that were not fitted
 UNNAMED = 3000.0  # nats of an interval that no law explains, below which it may be a burst of persistent physics
 ELSEWHERE = 10.0  # nats that joints other than the strongest must add: no force on the tool moves one joint alone
@@ -58,15 +58,20 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
             found.append(Transient(effect, wide, fit, 0.0))
         elif event.gain > UNNAMED:
             unnamed = (*unnamed, event)
-    rest = Refit(together.effects[:n], together.intervals[:n], together.correlations)
-    shares = _shares(problem, rest.effects, [p.effect for p in found])
+    persistent = Refit(together.effects[:n], together.intervals[:n], together.correlations)
+    shares = _shares(problem, persistent.effects, [p.effect for p in found])
     shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]
-    return Separated(rest, *carry_on(problem, shared, unnamed))
+    return Separated(persistent, *carry_on(problem, shared, unnamed))
 
 
 def _convinces(fit: EventFit) -> bool:
     gain = fit.without - fit.with_it
-    return fit.left < LEFT and fit.with_it < HELPS * fit.without and gain > NOTICED**2 and not _local(fit)
+    return (
+        fit.residual_share < MOST_RESIDUAL
+        and fit.with_it < HELPS * fit.without
+        and gain > NOTICED**2
+        and not _local(fit)
+    )
 
 
 def _local(fit: EventFit) -> bool:
