@@ -110,3 +110,8 @@ def has_regressor(model: object) -> TypeGuard[RigidBodyModel]:
 def is_robot_model(model: object) -> TypeGuard[RobotModel]:
     """Whether a model answers the calls of `RobotModel`; a corrected model does if its nominal model does."""
     return hasattr(model, "with_inertial_parameters")
+
+
+def joint_types_of(model: object, n_dof: int) -> tuple[str, ...]:
+    """'revolute', 'continuous' or 'prismatic' of each joint; revolute for a model that does not say."""
+    return tuple(getattr(model, "joint_types", ("revolute",) * n_dof))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.types import JointVector, Trajectory
+from lagnet.types import JointVector, Trajectory, joint_types_of
 
 BEYOND = 0.7  # [rad] beyond the recorded range, for a joint with known limits
 SLIDE = 0.1  # [m/rad] a prismatic joint's equivalent of a radian in these limits
@@ -77,8 +77,7 @@ def motion_limits(problem: Problem) -> MotionLimits:
 
 def _unit(problem: Problem) -> JointVector:
     """1 for joints that turn, less for joints that slide, shape (dof,)."""
-    kinds = getattr(problem.nominal, "joint_types", ("revolute",) * problem.n_dof)
-    return np.array([SLIDE if kind == "prismatic" else 1.0 for kind in kinds])
+    return np.array([SLIDE if kind == "prismatic" else 1.0 for kind in joint_types_of(problem.nominal, problem.n_dof)])
 
 
 def _positions(

@@ -24,6 +24,7 @@ from lagnet.models.corrected.named_effects import NamedEffect, load_before, torq
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 from lagnet.tracking.tracked_set import TrackedSet
+from lagnet.types import joint_types_of
 
 ROUNDS = 2  # of the weights: residuals of the second fit are those of the fitted model
 SHARE = "share"  # the one parameter of a body that is followed
@@ -152,7 +153,7 @@ def _load(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
 def _rows(work: GaussNewton, x: np.ndarray, tracked: TrackedSet, problem: Problem) -> tuple[ParameterRow, ...]:
     covariance, freedom = work.covariance(x)
     width = float(student.ppf(0.975, freedom))
-    kinds = getattr(problem.nominal, "joint_types", ("revolute",) * problem.n_dof)
+    kinds = joint_types_of(problem.nominal, problem.n_dof)
     slots = work.slots
     out = []
     for n, effect in enumerate(slots.effects):

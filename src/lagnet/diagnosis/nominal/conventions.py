@@ -20,7 +20,7 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.effects.own_terms import beside_own_terms
 from lagnet.errors import DiagnosisError
-from lagnet.types import has_regressor
+from lagnet.types import has_regressor, joint_types_of
 
 MISFIT = 0.5  # of some joint's torque power: only then is a convention looked for
 LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
@@ -213,7 +213,7 @@ def _readings(problem: Problem, motion: Motion) -> tuple[list[Reading], float]:
 
 
 def _others(problem: Problem, found: list[Reading]) -> Iterator[Reading]:
-    kinds = getattr(problem.nominal, "joint_types", ("revolute",) * problem.n_dof)
+    kinds = joint_types_of(problem.nominal, problem.n_dof)
     for joint in set(range(problem.n_dof)) - {r.joint for r in found}:
         for zero in RIGHT_ANGLES if kinds[joint] != "prismatic" else (0.0,):
             for turn in (1.0, -1.0):

@@ -32,6 +32,7 @@ from lagnet.diagnosis.verdict.verdict import (
 from lagnet.diagnosis.verdict.wording import SELDOM_MET, advice, clock_shift_words, explain
 from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
+from lagnet.types import joint_types_of
 
 KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 
@@ -91,8 +92,7 @@ def _warnings(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Re
 
 def is_prismatic(problem: Problem, joint: int | None) -> bool:
     """Whether a joint slides."""
-    kinds = getattr(problem.nominal, "joint_types", None)
-    return joint is not None and kinds is not None and kinds[joint] == "prismatic"
+    return joint is not None and joint_types_of(problem.nominal, problem.n_dof)[joint] == "prismatic"
 
 
 def nominal_of(problem: Problem) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
 from lagnet.diagnosis.data_quality.misfit import misfit_of
 from lagnet.diagnosis.data_quality.samples import Samples
+from lagnet.types import joint_types_of
 
 TURNS = {"turns": 2.0 * np.pi, "half turns": np.pi, "degrees": np.pi / 180.0, "milliradians": 1e-3, "gons": np.pi / 200}
 WAYS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254}
@@ -22,8 +23,7 @@ class PositionUnit(ReadingCheck):
     title = "positions are in another unit"
 
     def readings(self, evidence: Evidence) -> Iterator[Reading]:
-        kinds = getattr(evidence.model, "joint_types", ("revolute",) * evidence.model.n_dof)
-        sliding = np.array([kind == "prismatic" for kind in kinds])
+        sliding = np.array([kind == "prismatic" for kind in joint_types_of(evidence.model, evidence.model.n_dof)])
         for units, which in ((TURNS, ~sliding), (WAYS, sliding)):
             if not which.any():
                 continue
