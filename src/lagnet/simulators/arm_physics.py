@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -154,7 +154,7 @@ def arm_physics(model: Robot | CorrectedModel) -> ArmPhysics:
     lasting = [e for e in effects if e.interval is None and e.recording is None and not effect_named(e.effect).passing]
     passing = tuple(e for e in effects if e not in lasting)
     armature = np.array(nominal.armature)
-    bodies = apply_to_bodies(nominal, [e for e in lasting if e.effect in IN_BODIES])
+    bodies = cast(Robot, apply_to_bodies(nominal, [e for e in lasting if e.effect in IN_BODIES]))
     arm = _bare(bodies.with_armature(np.zeros(bodies.n_dof)), armature, blur, passing)
     for effect in lasting:
         if effect.effect not in IN_BODIES:
