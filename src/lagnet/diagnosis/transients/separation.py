@@ -58,10 +58,10 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
             found.append(Transient(effect, wide, fit, 0.0))
         elif event.gain > UNNAMED:
             unnamed = (*unnamed, event)
-    persistent = Refit(together.effects[:n], together.intervals[:n], together.correlations)
-    shares = _shares(problem, persistent.effects, [p.effect for p in found])
+    of_persistent = Refit(together.effects[:n], together.intervals[:n], together.correlations)
+    shares = _shares(problem, of_persistent.effects, [p.effect for p in found])
     shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]
-    return Separated(persistent, *carry_on(problem, shared, unnamed))
+    return Separated(of_persistent, *carry_on(problem, shared, unnamed))
 
 
 def _convinces(fit: EventFit) -> bool:
