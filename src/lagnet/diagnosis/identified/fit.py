@@ -53,16 +53,33 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
         effects: named physics, kept fixed.
     """
     groups, rest = term_groups(problem), usual_rest(problem)
-    segments = [_fit_segment(problem, p, effects) for p in pieces]
+    segments = [_fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
     first = make_design(problem, segments, [g for g in groups if not g.needs_load and g.pair is None])
     ridge = fit_ridge(first, joint_equations(first), inefficiency=10.0, steps=15)
     segments = [_with_load(s, _layer(first, ridge.x, rest)) for s in segments]
-    design = make_design(problem, segments, groups)
-    choice = choose(design)
-    if choice is None:
-        return None
-    layer, design, choice = _positive_definite(problem, effects, design, choice, rest)
-    return Identified(replace(layer, rest=friction_at_rest(problem, segments, layer)), design, choice)
+    without_bodies = [replace(s, regressor=None) for s in segments]
+    for pieces in (segments, without_bodies):  # the second where changed bodies harm some joint
+        design = make_design(problem, pieces, groups)
+        choice = choose(design)
+        if choice is not None:
+            layer, found, choice = _positive_definite(problem, effects, design, choice, rest)
+            layer = replace(layer, rest=friction_at_rest(problem, pieces, layer))
+            if not _harms(problem, pieces, layer):
+                return Identified(layer, found, choice)
+    return None
+
+
+def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLayer) -> bool:
+    """Whether some joint's fitted torque, samples at rest included, is predicted clearly worse with the layer."""
+    before, after = np.zeros((2, problem.n_dof))
+    for s in pieces:
+        motion = s.piece.motion(problem)
+        bodies = 0.0 if s.regressor is None or layer.bodies is None else s.regressor @ layer.bodies.ravel()
+        added = layer.term_torque(motion, s.load) + bodies
+        before += np.sum(problem.reduce(s.piece, s.target) ** 2, axis=0)
+        after += np.sum(problem.reduce(s.piece, s.target - added) ** 2, axis=0)
+    count = sum(s.piece.keep.size for s in pieces)
+    return bool(np.any(after > HARMFUL * before + NEGLIGIBLE**2 * count * problem.scale**2))
 
 
 def _positive_definite(

@@ -13,7 +13,7 @@ from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
-from lagnet.models.corrected.model import NamedEffect, load_before
+from lagnet.models.corrected.named_effects import NamedEffect, load_before
 from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, weight_in_each
 
 MOST_KEPT = 400e6  # bytes of columns that are kept for the next search

@@ -20,7 +20,7 @@ from lagnet.diagnosis.selection.arm_search import Selection, search_arm
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import NamedEffect, load_before
+from lagnet.models.corrected.named_effects import NamedEffect, load_before
 
 ROUNDS = 3  # at most; each starts from the torque that the one before found
 CHANGED = 0.02  # of a joint's rms torque: a smaller change does not alter the columns

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.arm_search import Selection
-from lagnet.models.corrected.model import NamedEffect
+from lagnet.models.corrected.named_effects import NamedEffect
 
 
 def named_effects(library: Library, found: Selection) -> tuple[NamedEffect, ...]:
