@@ -14,7 +14,7 @@ from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
 from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
 from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
 from lagnet.diagnosis.identifiability.unexcited_rivals import with_unexcited_rivals
-from lagnet.diagnosis.problem.intervals import set_aside, too_much
+from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import sum_normal_equations
@@ -90,8 +90,7 @@ def with_misspecification(state: DiagnosisState) -> DiagnosisState:
     effects = state.effects
     if not effects:
         return state
-    masked = set_aside(state.problem, state.events)
-    problem = state.problem if too_much(state.problem, masked) else masked
+    problem = lasting(state.problem, state.events)
     power = np.maximum(state.selection.fit.sse, state.selection.scales.noise_power)
     found = misspecification_errors(problem, effects, np.sqrt(power / state.equations.samples))
     errors = [with_convention(*pair) for pair in zip(effects, found, strict=True)]

@@ -13,7 +13,6 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.rigid_body.inertia import is_physically_consistent
 
 BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
-LOST = 1.5  # times the squared error before, from which consistent bodies fit too badly
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,24 +51,11 @@ def _tangent(work: GaussNewton, x: np.ndarray) -> _Tangent:
 def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
     """Replaces bodies that are not consistent or not determined by the nearest consistent ones, and refits all else.
 
-    A body far away may be the nearest along the tangent and yet fit nothing by the exact laws, such as a mass that
-    pays for moments of inertia and turns with a tilted base. Then links that are not consistent stay as modelled.
+    Making one body real moves the others, so each is given a second chance; from then on it is held. The others follow
+    along the tangent, and by the exact laws at the end.
     """
-    if not any(effect_named(e.effect).is_body for e in work.slots.effects):
+    if not _bodies(work):
         return x
-    before, nearest = work.error(x), _with_nearest(work, x)
-    after = work.error(nearest)
-    if after <= LOST * before:
-        return nearest
-    modelled = _as_modelled(work, x)
-    return modelled if work.error(modelled) < after else nearest
-
-
-def _with_nearest(work: GaussNewton, x: np.ndarray) -> np.ndarray:
-    """Making one body real moves the others, so each is given a second chance; from then on it is held.
-
-    The others follow along the tangent, and by the exact laws at the end.
-    """
     tried, held = set[int](), np.zeros(x.size, dtype=bool)
     while True:
         tangent, fixed = _tangent(work, x), held.copy()
@@ -85,19 +71,6 @@ def _with_nearest(work: GaussNewton, x: np.ndarray) -> np.ndarray:
         if not moved:
             return x
         x = work.descend(x, ~(held | fixed))
-
-
-def _as_modelled(work: GaussNewton, x: np.ndarray) -> np.ndarray:
-    """Bodies that are not consistent without any change, all else refitted around them."""
-    held = np.zeros(x.size, dtype=bool)
-    while True:
-        wrong = [n for n in _bodies(work) if not held[_own(work, x, n)].any() and not _is_consistent(work, x, n)]
-        if not wrong:
-            return x
-        own = np.concatenate([_own(work, x, n) for n in wrong])
-        x, held = x.copy(), held.copy()
-        x[own], held[own] = 0.0, True
-        x = work.descend(x, ~held)
 
 
 def _bodies(work: GaussNewton) -> list[int]:

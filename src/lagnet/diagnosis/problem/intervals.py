@@ -52,6 +52,12 @@ def too_much(problem: Problem, masked: Problem) -> bool:
     )
 
 
+def lasting(problem: Problem, events: Sequence[EventInterval]) -> Problem:
+    """The problem less its event intervals; the whole where they cover so much that they are no exception."""
+    masked = set_aside(problem, events)
+    return problem if too_much(problem, masked) else masked
+
+
 def _without(piece: Segment, events: Sequence[EventInterval], slack: float) -> Segment:
     time = piece.time[piece.keep]
     out = piece.counts
