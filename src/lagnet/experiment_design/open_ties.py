@@ -99,7 +99,7 @@ def _joint_alternatives(equations: NormalEquations, found: Selection, index: int
     joint = equations.library.hypotheses[index].joint or 0
     own, view = found.local[joint], views_of(equations, found)[joint]
     others = [o for _, o in replacements(view, own, index) if np.isfinite(view.score(o))]
-    return (joint,), (own, view.loss(own)[1]), [(o, view.loss(o)[1]) for o in others]
+    return (joint,), (own, view.coefficients(own)), [(o, view.coefficients(o)) for o in others]
 
 
 def _arm_alternatives(equations: NormalEquations, found: Selection, index: int) -> Alternatives:

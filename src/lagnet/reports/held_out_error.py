@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import Any
 
@@ -40,11 +40,11 @@ def error_falls(findings: Findings) -> str:
     return f"Held-out torque error {way} from {percent(start)} {' and '.join(parts)}."
 
 
-def _size(shown: list[Mapping[str, Any]], key: str) -> float:
+def _size(shown: Sequence[Mapping[str, Any]], key: str) -> float:
     return median(fit[key] for fit in shown)
 
 
-def _worst(fits: list[Mapping[str, Any]], key: str) -> str:
+def _worst(fits: Sequence[Mapping[str, Any]], key: str) -> str:
     """The joint of the whole arm with the largest error, and its noise floor where that is much of it."""
     if len(fits) < 2:
         return ""
