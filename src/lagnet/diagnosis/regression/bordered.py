@@ -13,6 +13,8 @@ import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import RIDGE
 
+NOTHING = 1e-200  # power of a column without content
+
 
 @dataclass(frozen=True, eq=False)
 class Additions:
@@ -40,11 +42,14 @@ class BorderedSystems:
             folds: shape (n_folds, K + 1, K + 1).
         """
         grams = np.concatenate([total[None] - folds, total[None]])
-        size = np.sqrt(np.maximum(np.diagonal(grams, axis1=1, axis2=2), 1e-300))
-        size[:, -1] = 1.0
-        self._size = size[-1]
-        self._systems = grams / size[:, :, None] / size[:, None, :]
-        self._folds = folds / size[:-1, :, None] / size[:-1, None, :]
+        power = np.diagonal(grams, axis1=1, axis2=2)
+        scale = np.where(
+            power > NOTHING, 1.0 / np.sqrt(np.maximum(power, NOTHING)), 0.0
+        )  # no content: coefficient zero
+        scale[:, -1] = 1.0
+        self._scale = scale[-1]
+        self._systems = grams * scale[:, :, None] * scale[:, None, :]
+        self._folds = folds * scale[:-1, :, None] * scale[:-1, None, :]
 
     def with_additions(self, base: np.ndarray, added: np.ndarray) -> Additions:
         """What `joint_loss` gives for a selection's columns with each of several additions of one width.
@@ -65,7 +70,7 @@ class BorderedSystems:
         way = -(phi[:, :, None, :] @ solved.transpose(0, 2, 1)[:, added])[:, :, 0]  # of θ_S, shape (n_folds + 1, m, k)
         start = solved[..., -1]
         errors = self._errors(base, added, start[:-1], way[:-1], phi[:-1])
-        return Additions(errors, (start[-1] + way[-1]) / self._size[base], phi[-1] / self._size[added])
+        return Additions(errors, (start[-1] + way[-1]) * self._scale[base], phi[-1] * self._scale[added])
 
     def _errors(
         self, base: np.ndarray, added: np.ndarray, start: np.ndarray, way: np.ndarray, phi: np.ndarray
