@@ -19,6 +19,7 @@ from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, 
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
+from lagnet.diagnosis.transients.differing_recordings import differing_recordings, lasting_loads, without_loads
 from lagnet.diagnosis.transients.separation import separate
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import DiagnosisError
@@ -131,7 +132,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
             return state
         masked = set_aside(problem, events)
         if too_much(problem, masked):
-            return replace(state, events=events)
+            return _with_differing_recordings(state, scan, again) or replace(state, events=events)
         clean = again(fit_sign_model(replace(masked, slow=blurred_speed(state.fit), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = detect_events(whole, clean.refit.effects, state.noise)
@@ -141,6 +142,20 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         events = scan.events
     found = _separated(replace(clean, problem=whole), scan) if scan.events else state
     return found if found.transients or found.events else state
+
+
+def _with_differing_recordings(
+    state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]
+) -> DiagnosisState | None:
+    """Persistent effects beside a load of its own in each recording that differs; None where there is no such load."""
+    problem = state.problem
+    found = differing_recordings(problem, scan)
+    if found is None:
+        return None
+    clean = again(without_loads(problem, found.loads))
+    whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
+    parts = _separated(replace(clean, problem=whole), found.scan)
+    return replace(parts, transients=lasting_loads(whole, parts.transients), events=())
 
 
 def _separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:

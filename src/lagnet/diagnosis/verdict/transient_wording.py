@@ -14,6 +14,7 @@ from lagnet.diagnosis.unexplained.friction_drift import Drift
 from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, NamedParameter
 from lagnet.diagnosis.verdict.wording import explain_transient
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.inertia.payload import Payload
 from lagnet.models.corrected.named_effects import EDGES
 from lagnet.recordings.recording import Recording
 
@@ -23,10 +24,16 @@ MOSTLY = 0.5  # of the held-out residual power in events, above which the remain
 def transient_effects(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
     """The named effects that act on an interval of one fitted recording."""
     half = 0.5 / state.problem.rate  # an edge lies between the last sample outside and the first inside
-    return tuple(_effect(t, _name(fit, t.effect.recording or 0), half) for t in state.transients)
+    return tuple(_effect(t, _name(fit, t.effect.recording or 0), half, _fills(t, fit)) for t in state.transients)
 
 
-def _effect(transient: Transient, recording: str, half: float) -> EffectFound:
+def _fills(transient: Transient, fit: Sequence[Recording]) -> bool:
+    """Whether the interval of a transient is the whole of its fitted recording."""
+    (start, end), time = transient.effect.interval or (0.0, 0.0), fit[transient.effect.recording or 0].time
+    return bool(start <= time[0] and time[-1] <= end)
+
+
+def _effect(transient: Transient, recording: str, half: float, throughout: bool) -> EffectFound:
     fit, (start, end) = transient.fit, transient.effect.interval or (0.0, 0.0)
     effect = replace(transient.effect, interval=(start - half, end + half))
     law = effect_named(effect.effect)
@@ -36,7 +43,7 @@ def _effect(transient: Transient, recording: str, half: float) -> EffectFound:
     )
     evidence = EffectEvidence(fit.without, fit.with_it, transient.share, fit.rival, fit.odds)
     interval = effect.interval or (0.0, 0.0)
-    sentence = explain_transient(law, interval, recording, parameters, fit.tied, evidence)
+    sentence = explain_transient(law, interval, recording, parameters, fit.tied, evidence, throughout)
     status = "tied" if fit.tied else "named"
     return EffectFound(law.name, None, status, fit.tied, parameters, evidence, sentence, interval, recording)
 
@@ -45,7 +52,20 @@ def words_on_time(state: DiagnosisState, fit: Sequence[Recording], held: Sequenc
     """A line on every interval that has no name, and on every friction that drifts."""
     events = [_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in state.events]
     drifts = [_drifting(d, state.problem.joints[d.joint], _name(fit, d.recording)) for d in state.drifts]
-    return (*events, *drifts)
+    return (*_differences(state, fit), *events, *drifts)
+
+
+def _differences(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[str, ...]:
+    """A line where recordings hold loads of their own: mass and centre in each."""
+    own = [t.effect for t in state.transients if _fills(t, fit) and t.effect.effect == Payload.name]
+    if not own:
+        return ()
+    loads = [
+        f"{e.values['m']:.3g} kg at ({', '.join(f'{e.values[c]:.3g}' for c in ('cx', 'cy', 'cz'))}) m in "
+        f"{_name(fit, e.recording or 0)}"
+        for e in own
+    ]
+    return (f"the recordings differ from each other: the arm carries {'; '.join(loads)}",)
 
 
 def _drifting(drift: Drift, joint: str, recording: str) -> str:

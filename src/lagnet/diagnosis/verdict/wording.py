@@ -49,13 +49,19 @@ def explain_transient(
     parameters: Sequence[NamedParameter],
     tied: Sequence[str],
     evidence: EffectEvidence,
+    throughout: bool = False,
 ) -> str:
-    """Effect, interval, recording, parameters, and the cross-validated error with and without it on that interval."""
+    """Effect, interval, recording, parameters, and the cross-validated error with and without it on that interval.
+
+    Args:
+        throughout: whether the interval is the whole recording.
+    """
     shown = values(parameters)
-    first = f"{law.title} from {interval[0]:.4g} s to {interval[1]:.4g} s of {recording}, {law.formula} with {shown}: "
+    when = "throughout" if throughout else f"from {interval[0]:.4g} s to {interval[1]:.4g} s of"
+    first = f"{law.title} {when} {recording}, {law.formula} with {shown}: "
     first += f"in that time the error is {percent(evidence.holdout_nmse_without)} of the torque's variance without it, "
     first += f"{percent(evidence.holdout_nmse_with)} with it, each part predicted from the others. "
-    first += "The corrected model has it in that time of that recording only."
+    first += f"The corrected model has it in {'' if throughout else 'that time of '}that recording only."
     if tied:
         first += f" This time cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}."
     return first

@@ -1,0 +1,95 @@
+"""Recordings that differ: a load of its own in each, where events are no exception but fill whole recordings.
+
+One load cannot explain recordings in which it was mounted differently: what fits them all is a compromise, and what is
+left of it fills each recording from its first sample to its last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.intervals import MOST
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.separation import separate
+from lagnet.diagnosis.transients.transient import Transient
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+
+FALLS = 0.5  # of the squared held-out error, joints weighted by their noise, that must remain at most
+
+
+@dataclass(frozen=True, eq=False)
+class Differing:
+    """Loads of single recordings.
+
+    Args:
+        loads: one for each recording that differs, from its first sample to the last that is held out.
+        scan: the intervals that they were found in.
+    """
+
+    loads: tuple[NamedEffect, ...]
+    scan: Scan
+
+
+def differing_recordings(problem: Problem, scan: Scan) -> Differing | None:
+    """A load for each fitted recording that an event fills; None where there is one recording only, or no such load.
+
+    Args:
+        problem: with all samples valid.
+        scan: events beside the effects that were found on all recordings together.
+    """
+    whole = tuple(
+        replace(e, start=first, end=last)
+        for e in scan.events
+        if not e.held_out
+        for first, last in [_span(_fitted(problem, e.recording))]
+        if e.end - e.start > MOST * (last - first)
+    )
+    if len({p.recording for p in problem.fit}) < 2 or not whole:
+        return None
+    filled = replace(scan, events=whole)
+    found = separate(problem, (), np.sqrt(scan.power), filled)
+    loads = tuple(t.effect for t in found.transients if effect_named(t.effect.effect).is_body)
+    if len(loads) < len(whole) or _error(problem, loads, scan) > FALLS * _error(problem, (), scan):
+        return None
+    return Differing(tuple(to_the_end(problem, e) for e in loads), filled)
+
+
+def without_loads(problem: Problem, loads: Sequence[NamedEffect]) -> Problem:
+    """The problem less the torque of the loads, fitted and held out."""
+    fit, holdout = (tuple(_less(problem, p, loads) for p in part) for part in (problem.fit, problem.holdout))
+    return replace(problem, fit=fit, holdout=holdout)
+
+
+def lasting_loads(problem: Problem, transients: Sequence[Transient]) -> tuple[Transient, ...]:
+    """The same loads until the last held-out sample of their recordings."""
+    return tuple(replace(t, effect=to_the_end(problem, t.effect)) for t in transients)
+
+
+def to_the_end(problem: Problem, effect: NamedEffect) -> NamedEffect:
+    """The effect from the first sample of its recording to the last, the held-out end included."""
+    own = [*_fitted(problem, effect.recording), *(p for p in problem.holdout if p.origin == effect.recording)]
+    return replace(effect, interval=(float(own[0].time[0]), float(max(p.time[-1] for p in own))))
+
+
+def _fitted(problem: Problem, recording: int | None) -> list[Segment]:
+    return [p for p in problem.fit if p.recording == recording]
+
+
+def _span(pieces: Sequence[Segment]) -> tuple[float, float]:
+    return float(pieces[0].time[0]), float(pieces[-1].time[-1])
+
+
+def _less(problem: Problem, piece: Segment, loads: Sequence[NamedEffect]) -> Segment:
+    return replace(piece, tau=piece.tau - (torque_with(piece.motion(problem), loads) - piece.load))
+
+
+def _error(problem: Problem, loads: Sequence[NamedEffect], scan: Scan) -> float:
+    """Σ r² / σ² on held-out samples."""
+    lasting = [to_the_end(problem, e) for e in loads]
+    residuals = (problem.reduce(p, p.tau - torque_with(p.motion(problem), lasting)) * p.counts for p in problem.holdout)
+    return float(sum(np.sum(r**2 / scan.power) for r in residuals))
