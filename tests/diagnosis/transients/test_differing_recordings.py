@@ -46,3 +46,9 @@ def test_a_load_that_is_mounted_alike_is_one(plant, arm, names) -> None:
     assert names(result) == {("payload", None)}
     assert [e.interval_s for e in result.effects] == [None]
     assert not any("differ" in line for line in result.verdict.warnings)
+
+
+def test_a_held_out_recording_that_contradicts_the_fitted_one_is_told(plant, arm) -> None:
+    fitted, other = (carrying(plant, arm, c, seed) for seed, c in zip((15, 16), CENTRES, strict=True))
+    result = diagnose([fitted], arm, [other])
+    assert any("differs from the fitted recordings from beginning to end" in line for line in result.verdict.warnings)

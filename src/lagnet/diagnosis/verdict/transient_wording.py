@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.problem.intervals import EventInterval
+from lagnet.diagnosis.problem.intervals import MOST, EventInterval
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.diagnosis.unexplained.friction_drift import Drift
@@ -50,7 +50,7 @@ def _effect(transient: Transient, recording: str, half: float, throughout: bool)
 
 def words_on_time(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
     """A line on every interval that has no name, and on every friction that drifts."""
-    events = [_warning(s, _name(held if s.held_out else fit, s.recording, s.held_out)) for s in state.events]
+    events = [_event_words(s, held if s.held_out else fit) for s in state.events]
     drifts = [_drifting(d, state.problem.joints[d.joint], _name(fit, d.recording)) for d in state.drifts]
     return (*_differences(state, fit), *events, *drifts)
 
@@ -80,7 +80,13 @@ def _name(recordings: Sequence[Recording], index: int, held_out: bool = False) -
     return recordings[index].path or f"{'held-out ' if held_out else ''}recording {index + 1}"
 
 
-def _warning(event: EventInterval, recording: str) -> str:
+def _event_words(event: EventInterval, recordings: Sequence[Recording]) -> str:
+    time, recording = recordings[event.recording].time, _name(recordings, event.recording, event.held_out)
+    if event.held_out and event.end - event.start > MOST * (time[-1] - time[0]):
+        return (
+            f"{recording} is held out and differs from the fitted recordings from beginning to end: a load or tool on "
+            f"the last link is another or mounted otherwise; fitted with the others, each gets a load of its own"
+        )
     why = "it lies in a held-out recording and gets no name" if event.held_out else "it has no name"
     return (
         f"{recording}: from {event.start:.4g} s to {event.end:.4g} s something acts on the arm that is absent from the "
