@@ -91,24 +91,21 @@ class GaussNewton:
         sums = [Superposition(motion, effects) for motion in self.motions]
         tables = [np.zeros((p.keep.size, self.problem.n_dof, int(free.sum()))) for p in self.pieces]
         for column, i in enumerate(np.flatnonzero(free)):
-            n, other, step = self._stepped(x, int(i))
+            step = self._step(x, int(i))
+            others = self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
+            changed = [n for n, (a, b) in enumerate(zip(effects, others, strict=True)) if a.key != b.key]
             for piece, total, table in zip(self.pieces, sums, tables, strict=True):
-                change = total.change(n, other)
+                change = total.change(changed[0], others[changed[0]]) if changed else {}
                 if change:
                     joints = list(change)
                     moved = self.problem.reduce(piece, np.column_stack(list(change.values())))
                     table[:, joints, column] = -moved * piece.counts[:, joints] / self.sigma[joints] / step
         return tables
 
-    def _stepped(self, x: np.ndarray, i: int) -> tuple[int, NamedEffect, float]:
-        """The effect of a coordinate, that effect a step further, and the step."""
+    def _step(self, x: np.ndarray, i: int) -> float:
+        """By how much a coordinate moves, away from its upper bound."""
         step = DIFFERENCE * max(abs(x[i]), 1e-2)
-        if x[i] + step > self.slots.bounds()[1][i]:
-            step = -step
-        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
-        moved = x[self.slots.of(n)].copy()
-        moved[i - self.slots.starts[n]] += step
-        return n, self.slots.effects[n].at_coordinates(moved), step
+        return -step if x[i] + step > self.slots.bounds()[1][i] else step
 
     def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
         """Bounded Gauss–Newton with step halving; parameters that are not free stay."""
