@@ -44,7 +44,7 @@ test-slow: $(STAMP)
 
 # Shapes, types and ranks held at run time, in the rooms whose annotations say them.
 test-checked: $(STAMP)
-	LAGNET_RUNTIME_CHECKS=1 $(PYTEST) -m "not slow" tests/models $(PYTEST_ARGS)
+	LAGNET_RUNTIME_CHECKS=1 $(PYTEST) tests/models $(PYTEST_ARGS)
 
 test-all: $(STAMP)
 	$(PYTEST) $(PYTEST_ARGS)

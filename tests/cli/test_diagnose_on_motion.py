@@ -20,6 +20,8 @@ from lagnet.rigid_body.robot import load_description
 from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.parameters import law_vector
 
+pytestmark = pytest.mark.slow
+
 MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="arm">
 <joint name="servo" axis="0 1 0" range="-3 3" damping="0.2" frictionloss="0.02" armature="0.01"/>
 <inertial pos="0 0 -0.1" mass="0.5" diaginertia="1e-4 1e-4 1e-4"/></body></worldbody>

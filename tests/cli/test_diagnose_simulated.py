@@ -11,6 +11,8 @@ import pytest
 from lagnet.cli.main import main
 from lagnet.rigid_body.random_arm import random_arm
 
+pytestmark = pytest.mark.slow
+
 RATE, SECONDS = 100.0, 20.0
 FRICTION = 1.5  # [N m s/rad]
 

@@ -20,6 +20,8 @@ from lagnet.simulators.reference_cases import case_values
 from lagnet.simulators.round_trip import smooth_motion
 from lagnet.simulators.tracking_control import tracking
 
+pytestmark = pytest.mark.slow
+
 ARM = random_arm(2, seed=3, kinds=("revolute",), fixed=False)
 
 

@@ -15,6 +15,8 @@ from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm_urdf
 from lagnet.rigid_body.robot import load_description
 
+pytestmark = pytest.mark.slow
+
 RATE = 100.0  # [Hz]
 FRICTION = 2.0  # [N m]
 SHARP = 1e-3  # [rad/s] over which it changes sign

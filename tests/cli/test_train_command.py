@@ -13,6 +13,8 @@ from lagnet.models.files.saving import load_model
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 
+pytestmark = pytest.mark.slow
+
 TURN, FRICTION = 2 * np.pi, 2.0
 
 

@@ -20,6 +20,7 @@ from lagnet.simulation.follow import follow
 from lagnet.simulation.injection import inject
 from lagnet.simulation.simulate import SimulationSettings
 
+pytestmark = pytest.mark.slow
 RATE = 100.0  # [Hz]
 SECONDS = 20.0
 QUICK = SearchSettings(draws=40, kept=1, steps=40)

@@ -18,6 +18,8 @@ from lagnet.recordings.recording import Recording
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.train import train
 
+pytestmark = pytest.mark.slow
+
 ROUNDED_TIP = 1e-4  # |ω| is rounded below a thousandth of a typical speed
 TYPES = ("continuous", "prismatic", "revolute")
 SETTINGS = AugmentedSettings(

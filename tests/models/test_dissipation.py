@@ -17,6 +17,8 @@ from lagnet.models.residuals.augmented import Augmented
 from lagnet.models.residuals.dissipation import DRAGS, DissipationSettings
 from lagnet.models.scales import Scales, fit_scales
 
+pytestmark = pytest.mark.slow
+
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 ROUNDED_TIP = 1e-4  # |ω| is rounded below a thousandth of a typical speed
 SMALL = DelanSettings(rank=3, potential_rank=3)

@@ -12,6 +12,8 @@ from tests.models.term_by_term import GravityInResidual, WithoutCoriolis, failur
 from lagnet.models.files.saving import load_model
 from lagnet.rigid_body.robot import load_description
 
+pytestmark = pytest.mark.slow
+
 FIXTURES = Path(__file__).parent / "fixtures"
 TERM = 1e-3  # error power over the power of the joint's own torque: a hundred times what the kept model leaves
 MASS = 1e-2  # relative Frobenius error of the mass matrix, the pass line of the ideal study

@@ -15,6 +15,8 @@ from lagnet.models.networks import ACTIVATIONS
 from lagnet.models.one_sample import BENDS, OneSample
 from lagnet.models.scales import fit_scales
 
+pytestmark = pytest.mark.slow
+
 IDENTITY = 1e-10  # float64 rounding of some hundred operations on numbers of order 1 to 100
 SINGLE = 1e-5  # of the largest torque: float32 rounding of the same
 TYPES = ("prismatic", "continuous", "prismatic", "revolute")

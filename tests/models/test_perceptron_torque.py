@@ -15,6 +15,8 @@ from lagnet.models.lagrangians.perceptron_delan import COUPLINGS, PerceptronDela
 from lagnet.models.networks import ACTIVATIONS, make_network
 from lagnet.models.scales import fit_scales
 
+pytestmark = pytest.mark.slow
+
 IDENTITY = 1e-10  # float64 rounding of some hundred operations on numbers of order 1 to 100
 TYPES = ("continuous", "prismatic", "revolute")
 

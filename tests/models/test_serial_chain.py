@@ -36,6 +36,8 @@ from lagnet.rigid_body.urdf import read_urdf
 from lagnet.rigid_body.xml_files import checked_xml
 from lagnet.types import InverseDynamics
 
+pytestmark = pytest.mark.slow
+
 IDENTITY = 1e-9  # two algorithms on one arm in float64
 EXACT = 1e-12  # nMSE of a term from noise-free torque: the pass line
 SAMPLES = 200

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from lagnet.models.files.saving import load_model
 from lagnet.plausibility.report import PlausibilityReport
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.plausibility.suite import check
 from lagnet.rigid_body.robot import load_description
+
+pytestmark = pytest.mark.slow
 
 KEPT = Path(__file__).parents[1] / "models" / "fixtures"
 

@@ -14,6 +14,8 @@ import pytest
 
 from lagnet.training.cores import mesh_for, parts_of, usable_cores
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = Path(__file__).with_name("trained_on_cores.py")
 PATIENCE = 240.0  # [s] for ten seconds of work
 ROUNDING = 1e-3  # of torques of the order of one, after a hundred steps in single precision

@@ -16,6 +16,8 @@ from lagnet.training.ensemble import train_ensemble
 from lagnet.training.settings import TrainingSettings
 from lagnet.types import InverseDynamics
 
+pytestmark = pytest.mark.slow
+
 SHORT = TrainingSettings(steps=200, batch=64, patience=1.0, learning_rate=5e-2)
 COVERAGE = 0.9
 

@@ -15,6 +15,8 @@ from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.training.held_out_share import shares
 from lagnet.training.train import train
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = AugmentedSettings(mechanics_settings=TINY, residual=TorqueNetworkSettings(hidden=(8,)))
 NOISE = 0.3  # N m, white: nothing that an ε could know of
 

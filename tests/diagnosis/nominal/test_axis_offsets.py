@@ -13,6 +13,8 @@ from lagnet.rigid_body.robot import Robot
 from lagnet.rigid_body.urdf import read_urdf
 from lagnet.rigid_body.xml_files import checked_xml
 
+pytestmark = pytest.mark.slow
+
 APART = 0.08  # the axes of elbow and wrist [m]
 MISSED = np.full(3, 1e-4)  # [N m]
 SAME = 1e-5  # of the torque

@@ -9,6 +9,8 @@ import lagnet
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import write_diagnosis
 
+pytestmark = pytest.mark.slow
+
 SHARP = 1e-3  # [rad/s]
 
 

@@ -7,6 +7,8 @@ import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 SHOULDER, WRIST = 1, 2
 SIZE = 0.15  # of the joint's torque
 

@@ -11,6 +11,8 @@ from lagnet.diagnosis.writing import holdout_table
 from lagnet.recordings.loading.load import load_recording
 from lagnet.rigid_body.robot import load_description
 
+pytestmark = pytest.mark.slow
+
 TORQUE_CONSTANT = (14.87, 13.26, 11.13, 10.62, 11.03, 11.47)  # [N m/A], the authors' identification
 DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "presliding_hysteresis"}
 

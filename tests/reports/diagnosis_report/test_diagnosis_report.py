@@ -15,6 +15,8 @@ from jsonschema import Draft202012Validator
 from lagnet.diagnosis.verdict.report_data import JointEvidence, ReportData
 from lagnet.reports.diagnosis_report import write_report
 
+pytestmark = pytest.mark.slow
+
 MEGABYTE = 1e6
 HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=\"console.error('owned')\">&amp;"
 
