@@ -119,7 +119,9 @@ def test_torque_is_linear_in_the_moments(anything: SerialArm) -> None:
 def test_relaxation_holds_every_arm_of_its_axes_and_no_other(anything: SerialArm) -> None:
     with jax.enable_x64(True):
         states = [jnp.stack(part) for part in zip(*map(_state, range(60)), strict=True)]
-        torque = np.asarray(jax.jit(jax.vmap(anything.inverse_dynamics))(*states) - anything.rotor_inertia * states[2])
+        torque = np.asarray(
+            jax.jit(jax.vmap(anything.inverse_dynamics))(*states) - anything.rotor_inertia[None] * states[2]
+        )
 
         @jax.jit
         def relaxed(angles):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lagnet.errors import ModelError
@@ -56,7 +55,5 @@ class SerialChainSettings:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joint_terms", check_joint_terms(self.joint_terms))
-        if isinstance(self.search, Mapping):  # plain values, as they come from a file
-            object.__setattr__(self, "search", SearchSettings(**self.search))
         if not 0 < self.holdout < 1:
             raise ModelError(f"holdout is {self.holdout}, expected a share between 0 and 1")
