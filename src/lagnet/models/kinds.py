@@ -150,10 +150,14 @@ def _made(cls: type, given: Mapping[str, Any], kind: str) -> Any:
     values = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
     if cls is AugmentedSettings:
         values = _nested(values)
-    nested = {f.name: f.default_factory for f in dataclasses.fields(cls) if dataclasses.is_dataclass(f.default_factory)}
+    makers: dict[str, Any] = {f.name: f.default_factory for f in dataclasses.fields(cls)}
     try:
-        plain = [name for name in nested if isinstance(values.get(name), Mapping)]  # as they come from a file
-        return cls(**(values | {name: nested[name](**values[name]) for name in plain}))
+        for name, value in values.items():
+            if isinstance(value, Mapping) and dataclasses.is_dataclass(
+                makers[name]
+            ):  # plain values, as files hold them
+                values[name] = makers[name](**value)
+        return cls(**values)
     except (TypeError, ValueError) as error:
         raise ModelError(f"settings of {kind} are not usable: {error}") from None
 
