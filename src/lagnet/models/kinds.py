@@ -153,9 +153,7 @@ def _made(cls: type, given: Mapping[str, Any], kind: str) -> Any:
     makers: dict[str, Any] = {f.name: f.default_factory for f in dataclasses.fields(cls)}
     try:
         for name, value in values.items():
-            if isinstance(value, Mapping) and dataclasses.is_dataclass(
-                makers[name]
-            ):  # plain values, as files hold them
+            if isinstance(value, Mapping) and dataclasses.is_dataclass(makers[name]):  # plain, as in files
                 values[name] = makers[name](**value)
         return cls(**values)
     except (TypeError, ValueError) as error:
