@@ -66,8 +66,13 @@ def without_loads(problem: Problem, loads: Sequence[NamedEffect]) -> Problem:
 
 
 def lasting_loads(problem: Problem, transients: Sequence[Transient]) -> tuple[Transient, ...]:
-    """The same loads until the last held-out sample of their recordings."""
-    return tuple(replace(t, effect=to_the_end(problem, t.effect)) for t in transients)
+    """The same loads until the last held-out sample of their recordings, whose ends are no estimates."""
+    out = []
+    for one in transients:
+        effect = to_the_end(problem, one.effect)
+        start, end = effect.interval or (0.0, 0.0)
+        out.append(replace(one, effect=effect, intervals={**one.intervals, "t0": (start, start), "t1": (end, end)}))
+    return tuple(out)
 
 
 def to_the_end(problem: Problem, effect: NamedEffect) -> NamedEffect:

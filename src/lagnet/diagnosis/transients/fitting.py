@@ -121,9 +121,13 @@ def _starts(near: Problem, event: EventInterval, power: np.ndarray) -> list[Name
 
 
 def _whole(near: Problem, series: RecordingResidual, event: EventInterval) -> tuple[float, float]:
-    """The interval of an event; to the end of the recording where the valid samples end inside it."""
-    start = near.fit[0].time[0] if event.start <= series.time[0] else event.start
-    end = near.fit[-1].time[-1] if event.end >= series.time[-1] else event.end
+    """The interval of an event; beyond the end of the recording where the valid samples end inside it.
+
+    An edge on the very last sample would have a derivative of nothing but rounding, and go anywhere.
+    """
+    beyond = 2.0 / near.rate
+    start = near.fit[0].time[0] - beyond if event.start <= series.time[0] else event.start
+    end = near.fit[-1].time[-1] + beyond if event.end >= series.time[-1] else event.end
     return float(start), float(end)
 
 
