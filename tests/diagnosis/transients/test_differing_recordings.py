@@ -16,7 +16,10 @@ APART = 0.03  # [m] by which a centre may be off
 def carrying(plant, arm, centre, seed: int):
     """A recording of the arm with the load, while its model has none."""
     loaded = arm.with_payload(MASS, centre, 0.004 * np.eye(3))
-    law = lambda q, v, a, body: loaded.inverse_dynamics(q, v, a) - arm.inverse_dynamics(q, v, a)  # noqa: E731
+
+    def law(q, v, a, body):
+        return loaded.inverse_dynamics(q, v, a) - arm.inverse_dynamics(q, v, a)
+
     return plant(law).record(seed)
 
 

@@ -81,10 +81,6 @@ class GaussNewton:
             out.append(residual * piece.counts / self.sigma)
         return out
 
-    def error(self, x: np.ndarray) -> float:
-        """Σ e² over all segments and joints, in variances of the noise."""
-        return power_of_all(self.residuals(x))
-
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
         effects = self.slots.named(x)

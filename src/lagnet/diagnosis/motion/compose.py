@@ -16,6 +16,7 @@ from lagnet.diagnosis.motion.problem import motion_rates
 from lagnet.diagnosis.motion.rivals import Comparison
 from lagnet.diagnosis.motion.verdict import MotionVerdict, PositionErrors
 from lagnet.diagnosis.motion.wording import as_ratio, explain_effect
+from lagnet.diagnosis.verdict.inputs import nominal_entry, recording_entries
 from lagnet.diagnosis.verdict.verdict import (
     Abstained,
     EffectEvidence,
@@ -32,7 +33,6 @@ from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KP, LAW, NAMES
 
 ABOVE = 2.0  # least motion error over the resolution to be significant
-KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
 Rollouts = tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]]
 
 
@@ -61,8 +61,8 @@ def compose_motion_verdict(
     verdict = Verdict(
         lagnet_version=__version__,
         seed=seed,
-        nominal=_nominal_of(robot),
-        recordings=(*(_recording(r, "fit") for r in fit), *(_recording(r, "holdout") for r in held)),
+        nominal=nominal_entry(robot, robot.joints),
+        recordings=recording_entries(fit, held),
         conditioning={
             "rate_hz": float(fit[0].rate),
             "bandwidth_hz": float(fit[0].rate) / 2.0,
@@ -93,27 +93,6 @@ def compose_motion_verdict(
     )
     bands = tuple(None if d is None or d.rest is None else asdict(d.rest) for d in found)
     return MotionVerdict(verdict, errors, _servo_of(servo, found, joints), bands, _rejected(joints, found))
-
-
-def _nominal_of(robot: Any) -> dict[str, Any]:
-    kind = str(getattr(robot, "kind", ""))
-    return {
-        "kind": kind if kind in KINDS else "learned",
-        "source": str(getattr(robot, "source", "") or type(robot).__name__),
-        "sha256": str(getattr(robot, "sha256", "")),
-        "joints": list(robot.joints),
-    }
-
-
-def _recording(recording: Recording, role: str) -> dict[str, Any]:
-    return {
-        "path": recording.path,
-        "role": role,
-        "sha256": recording.sha256,
-        "n_samples": len(recording),
-        "duration_s": recording.duration,
-        "rate_hz": recording.rate,
-    }
 
 
 def _signals(parts: Sequence[Recording], found: Sequence[JointDiagnosis | None]) -> list[dict[str, np.ndarray]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from lagnet.diagnosis.problem.residuals import power_of, stacked
 from lagnet.diagnosis.problem.tonal_noise import tonal_noise_words
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.unexplained.localisation import locate
+from lagnet.diagnosis.verdict.inputs import nominal_entry, recording_entries
 from lagnet.diagnosis.verdict.transient_wording import changes_in_time, events_in_fit, transient_effects, words_on_time
 from lagnet.diagnosis.verdict.verdict import (
     Abstained,
@@ -34,8 +34,6 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 from lagnet.types import joint_types_of
 
-KINDS = ("urdf", "mjcf", "named_robot", "learned", "corrected")
-
 
 def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
     """All parts of the verdict."""
@@ -51,8 +49,8 @@ def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Seque
     return Verdict(
         lagnet_version=__version__,
         seed=state.seed,
-        nominal=nominal_of(problem),
-        recordings=(*(_recording(r, "fit") for r in fit), *(_recording(r, "holdout") for r in held)),
+        nominal=nominal_entry(problem.nominal, problem.joints),
+        recordings=recording_entries(fit, held),
         conditioning=conditioning,
         joints=mismatch,
         effects=effects,
@@ -93,28 +91,6 @@ def _warnings(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Re
 def is_prismatic(problem: Problem, joint: int | None) -> bool:
     """Whether a joint slides."""
     return joint is not None and joint_types_of(problem.nominal, problem.n_dof)[joint] == "prismatic"
-
-
-def nominal_of(problem: Problem) -> dict[str, Any]:
-    """Kind, source, checksum and joints of the nominal model."""
-    model = problem.nominal
-    return {
-        "kind": kind if (kind := str(getattr(model, "kind", ""))) in KINDS else "learned",
-        "source": str(getattr(model, "source", "") or type(model).__name__),
-        "sha256": str(getattr(model, "sha256", "")),
-        "joints": list(problem.joints),
-    }
-
-
-def _recording(recording: Recording, role: str) -> dict[str, Any]:
-    return {
-        "path": recording.path,
-        "role": role,
-        "sha256": recording.sha256,
-        "n_samples": len(recording),
-        "duration_s": recording.duration,
-        "rate_hz": recording.rate,
-    }
 
 
 def _mismatch(state: DiagnosisState, joint: int) -> JointMismatch:
