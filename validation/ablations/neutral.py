@@ -16,7 +16,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection
 from lagnet.diagnosis.selection.arm_search import Selection
 from lagnet.diagnosis.selection.holdout_gain import error_of
-from lagnet.diagnosis.selection.joint_search import JointView, drop_immaterial, plain_moves
+from lagnet.diagnosis.selection.joint_search import JointView, best_addition, drop_immaterial
 
 ROUNDING = 1e-7  # of a joint's torque: the noise floor where no noise is known
 
@@ -42,9 +42,8 @@ def first_come(old: Callable) -> Callable:
     def search(view: JointView, warm: tuple[int, ...] = ()) -> tuple[int, ...]:
         selection: tuple[int, ...] = ()
         while True:
-            longer = [s for s in plain_moves(view, selection) if len(s) > len(selection)]
-            best = max(longer, key=view.score, default=selection)
-            if not view.score(best) > view.score(selection):
+            score, best = best_addition(view, selection, selection)
+            if not score > view.score(selection):
                 return drop_immaterial(view, selection)
             selection = best
 
@@ -52,15 +51,8 @@ def first_come(old: Callable) -> Callable:
 
 
 def error_where_fitted(old: Callable) -> Callable:
-    """Error of the fit to all blocks of a joint on these same blocks."""
-
-    def joint_loss(total: np.ndarray, folds: np.ndarray, columns: np.ndarray) -> tuple[float, np.ndarray]:
-        _, theta = old(total, folds, columns)
-        inner = total[np.ix_(columns, columns)]
-        error = total[-1, -1] - 2.0 * theta @ total[columns, -1] + theta @ inner @ theta
-        return float(max(error, 0.0)), theta
-
-    return joint_loss
+    """Error of the fit to all blocks of a joint on these same blocks: one fold, held again by the fit without it."""
+    return lambda total, folds: old(2.0 * total, total[None])
 
 
 def arm_error_where_fitted(old: Callable) -> Callable:

@@ -62,7 +62,7 @@ WITHOUT_STEP = (
         "unseen blocks",
         "hypotheses are judged on the data that they are fitted to",
         instead={
-            "lagnet.diagnosis.regression.cross_validation:joint_loss": neutral.error_where_fitted,
+            "lagnet.diagnosis.regression.joint_system:BorderedSystems": neutral.error_where_fitted,
             "lagnet.diagnosis.regression.cross_validation:_unseen_error": neutral.arm_error_where_fitted,
         },
     ),

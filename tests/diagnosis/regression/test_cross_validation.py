@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.regression.cross_validation import RIDGE, joint_loss, take_off
+from lagnet.diagnosis.regression.bordered import BorderedSystems
+from lagnet.diagnosis.regression.cross_validation import RIDGE, take_off
 from lagnet.diagnosis.regression.normal_equations import ridge_solve
 
 EXACT = 1e-6  # the ridge is 1e-7 of a column's power
@@ -32,7 +33,7 @@ def test_solve_is_least_squares(blocks) -> None:
 
 def test_loss_is_the_error_on_blocks_left_out(blocks) -> None:
     folds, columns = grams_of(blocks), np.array([0, 2])
-    loss, theta = joint_loss(folds.sum(axis=0), folds, columns)
+    loss, theta = BorderedSystems(folds.sum(axis=0), folds).alone(columns)
     expected = 0.0
     for left in range(len(blocks)):
         rest = np.delete(blocks, left, axis=0).reshape(-1, 5)
@@ -45,7 +46,7 @@ def test_loss_is_the_error_on_blocks_left_out(blocks) -> None:
 
 def test_loss_of_nothing_is_the_power_of_the_residual(blocks) -> None:
     folds = grams_of(blocks)
-    loss, theta = joint_loss(folds.sum(axis=0), folds, np.zeros(0, dtype=int))
+    loss, theta = BorderedSystems(folds.sum(axis=0), folds).alone(np.zeros(0, dtype=int))
     assert loss == pytest.approx(float(np.sum(blocks[..., 4] ** 2)))
     assert theta.size == 0
 

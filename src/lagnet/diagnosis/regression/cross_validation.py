@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
 
 from lagnet.diagnosis.regression.block_gram import BlockGrams
+from lagnet.diagnosis.regression.compiled import add_block, squared_errors
 from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.regression.normal_equations import ridge_solve
 from lagnet.diagnosis.settings import DecisionLimits
@@ -45,6 +47,11 @@ class NormalEquations:
             self._known[key] = make()
         return self._known[key]
 
+    @cached_property
+    def without_folds(self) -> tuple[np.ndarray, ...]:
+        """For each joint, the sums of all blocks but those of each fold, shape (n_folds, K + 1, K + 1)."""
+        return tuple(t[None] - f for t, f in zip(self.total, self.folds, strict=True))
+
     def is_felt(self, joint: int, index: int) -> bool:
         """Whether a hypothesis has any torque at a joint: a link loads no joint behind it."""
         columns = self.columns(joint, [index])
@@ -70,31 +77,17 @@ def sum_normal_equations(library: Library, grams: BlockGrams, limits: DecisionLi
     )
 
 
-def joint_loss(bench_total: np.ndarray, folds: np.ndarray, columns: np.ndarray) -> tuple[float, np.ndarray]:
-    """Squared error of a joint on blocks not used for the fit, and the coefficients from all blocks.
+def take_off(gram: np.ndarray, columns: np.ndarray, theta: np.ndarray, kept: np.ndarray | None = None) -> np.ndarray:
+    """Normal equations after a known contribution is taken off the residual; batched over leading axes.
 
     Args:
-        bench_total: shape (K + 1, K + 1), with the residual last.
-        folds: shape (FOLDS, K + 1, K + 1).
-        columns: numbers of the columns in use.
+        gram: shape (..., K + 1, K + 1), the residual last.
+        columns, theta: shape (k,), what is known.
+        kept: columns of the result before the residual; None: all.
     """
-    if not columns.size:
-        return float(bench_total[-1, -1]), np.zeros(0)
-    across = columns[:, None], columns[None, :]
-    inner, moment = folds[:, *across], folds[:, columns, -1]
-    grams = np.concatenate([bench_total[across][None] - inner, bench_total[across][None]])
-    moments = np.concatenate([bench_total[columns, -1][None] - moment, bench_total[columns, -1][None]])
-    solved = ridge_solve(grams, moments, RIDGE)  # without each fold in turn, and last with all
-    theta = solved[:-1]
-    error = folds[:, -1, -1].sum() - 2.0 * np.vdot(theta, moment)
-    error += np.vdot(theta, (inner @ theta[..., None])[..., 0])
-    return float(error), solved[-1]
-
-
-def take_off(gram: np.ndarray, columns: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Normal equations after a known contribution is taken off the residual; batched over leading axes."""
-    out = gram.copy()
-    shift = gram[..., :, columns] @ theta
+    rows = np.arange(gram.shape[-1]) if kept is None else np.append(kept, gram.shape[-1] - 1)
+    out = gram[..., rows[:, None], rows]
+    shift = gram[..., rows[:, None], columns] @ theta
     out[..., :, -1] -= shift
     out[..., -1, :] -= shift
     out[..., -1, -1] += np.einsum("...i,i->...", gram[..., columns, :][..., :, columns] @ theta, theta)
@@ -142,25 +135,21 @@ def assemble(
             continue
         here, there = equations.columns(joint, own), np.concatenate([where[i] for i in own])
         weight = 1.0 / sigma[joint] ** 2
-        gram[:, there[:, None], there[None, :]] += weight * table[:, here[:, None], here[None, :]]
-        moment[:, there] += weight * table[:, here, -1]
+        add_block(gram, moment, table, here, there, weight)
     return gram, moment
 
 
 def _unseen_error(equations: NormalEquations, order: Sequence[int], where: dict, sigma: np.ndarray) -> np.ndarray:
-    rest = [t[None] - f for t, f in zip(equations.total, equations.folds, strict=True)]
     error = np.array([f[:, -1, -1].sum() for f in equations.folds])
     if not order:
         return error
-    gram, moment = assemble(equations, order, where, sigma, rest)
+    gram, moment = assemble(equations, order, where, sigma, equations.without_folds)
     theta = ridge_solve(gram, moment, RIDGE)
     for joint, fold in enumerate(equations.folds):
         own = [i for i in order if i in equations.library.slots[joint]]
         if own:
             here, there = equations.columns(joint, own), np.concatenate([where[i] for i in own])
-            t = theta[:, there]
-            error[joint] += np.einsum("fi,fij,fj->", t, fold[:, here[:, None], here[None, :]], t)
-            error[joint] -= 2.0 * np.sum(t * fold[:, here, -1])
+            error[joint] = squared_errors(fold, here, theta, there)
     return error
 
 
@@ -173,9 +162,9 @@ def statistical_inefficiency(equations: NormalEquations, joint: int, columns: np
     table = equations.grams.joints[joint]
     if not columns.size:
         return 1.0
-    rest = take_off(table, columns, theta)
+    rest = take_off(table, columns, theta, columns)
     power = rest[:, -1, -1].sum() / equations.samples[joint]
-    scores = rest[:, columns, -1]
+    scores = rest[:, :-1, -1]
     usual = power * equations.total[joint][columns, columns]
     keep = usual > 0
     ratios = np.sum(scores[:, keep] ** 2, axis=0) / usual[keep]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from lagnet.diagnosis.regression.bordered import BorderedSystems
-from lagnet.diagnosis.regression.cross_validation import NormalEquations, joint_loss, take_off
+from lagnet.diagnosis.regression.compiled import rows_inside
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, take_off
 from lagnet.diagnosis.regression.library import Library
 
 
@@ -28,10 +29,11 @@ class JointSystem:
     Args:
         library: the hypotheses.
         joint: index.
-        total: shape (K + 1, K + 1), sum of all blocks.
+        total: shape (K + 1, K + 1), sum of all blocks; the K columns are those of the joint's own hypotheses.
         folds: shape (n_folds, K + 1, K + 1).
         known: what was judged, by selections in increasing order.
         found: selections that a search found, by where it began.
+        more: squared errors with each hypothesis more, by selections in increasing order.
     """
 
     library: Library
@@ -40,6 +42,7 @@ class JointSystem:
     folds: np.ndarray
     known: dict[tuple[int, ...], Judged] = field(default_factory=dict)
     found: dict[Hashable, tuple[int, ...]] = field(default_factory=dict)
+    more: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
     @property
     def power(self) -> float:
@@ -48,7 +51,7 @@ class JointSystem:
 
     def solved(self, selection: Sequence[int]) -> tuple[float, np.ndarray]:
         """E(S) on blocks left out of the fit [N² m²], and θ of all blocks."""
-        return joint_loss(self.total, self.folds, self._columns(selection))
+        return self._bordered.alone(self._columns(selection))
 
     def judged(self, selection: Sequence[int]) -> Judged:
         """E(S), and whether its coefficients are feasible."""
@@ -57,28 +60,31 @@ class JointSystem:
             error, theta = self.solved(key)
             lower, upper = self.library.bounds_at(self.joint)
             columns = self._columns(key)
-            inside = np.all((theta >= lower[columns]) & (theta <= upper[columns]))
-            self.known[key] = Judged(error, bool(inside))
+            inside = rows_inside(theta[None], columns, columns[None, :0], lower, upper)
+            self.known[key] = Judged(error, bool(inside[0]))
         return self.known[key]
 
-    def judge_additions(self, selection: Sequence[int], added: Iterable[int]) -> None:
-        """Judges a selection with each of several hypotheses more, at once."""
-        by_width: dict[int, list[int]] = {}
-        for i in added:
-            if tuple(sorted((*selection, i))) not in self.known:
-                by_width.setdefault(self.library.widths[i], []).append(i)
-        for own in by_width.values():
-            if len(own) > 1:  # one alone is judged when it is asked for
-                self._judge_at_once(tuple(selection), own)
+    def with_each(self, selection: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+        """E(S ∪ {k}) and whether its coefficients are feasible, for every hypothesis k of the joint, shape (m,) each.
 
-    def _judge_at_once(self, selection: tuple[int, ...], added: Sequence[int]) -> None:
-        base, columns = self._columns(selection), np.stack([self._columns((i,)) for i in added])
+        Hypotheses of the selection itself are not feasible beside it.
+        """
+        key = tuple(sorted(selection))
+        if key not in self.more:
+            self.more[key] = self._with_each(key)
+        return self.more[key]
+
+    def _with_each(self, selection: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+        local = self.library.local[self.joint]
+        errors, feasible = np.full(len(local), np.inf), np.zeros(len(local), dtype=bool)
+        base = self._columns(selection)
         lower, upper = self.library.bounds_at(self.joint)
-        found = self._bordered.with_additions(base, columns)
-        inside = np.all((found.base >= lower[base]) & (found.base <= upper[base]), axis=1)
-        inside &= np.all((found.added >= lower[columns]) & (found.added <= upper[columns]), axis=1)
-        for i, error, feasible in zip(added, found.errors.tolist(), inside.tolist(), strict=True):
-            self.known[tuple(sorted((*selection, i)))] = Judged(error, feasible)
+        for places, columns in self.library.by_width[self.joint]:
+            found = self._bordered.with_additions(base, columns)
+            errors[places] = found.errors
+            feasible[places] = rows_inside(found.theta, base, columns, lower, upper)
+        feasible[[local.index(i) for i in selection]] = False
+        return errors, feasible
 
     @cached_property
     def _bordered(self) -> BorderedSystems:
@@ -99,12 +105,12 @@ def joint_system(equations: NormalEquations, joint: int, taken: dict[int, np.nda
         taken: coefficients of arm-wide hypotheses.
     """
     felt = {i: theta for i, theta in taken.items() if equations.is_felt(joint, i)}
-    if not felt:
-        return equations.remembered(
-            joint, lambda: JointSystem(equations.library, joint, equations.total[joint], equations.folds[joint])
-        )
-    total, folds = equations.total[joint], equations.folds[joint]
-    for index, theta in felt.items():
-        columns = equations.columns(joint, [index])
-        total, folds = take_off(total, columns, theta), take_off(folds, columns, theta)
-    return JointSystem(equations.library, joint, total, folds)
+    own = equations.columns(joint, equations.library.local[joint])
+    columns = equations.columns(joint, felt)
+    theta = np.concatenate([np.zeros(0), *felt.values()])
+
+    def made() -> JointSystem:
+        parts = (take_off(x, columns, theta, own) for x in (equations.total[joint], equations.folds[joint]))
+        return JointSystem(equations.library, joint, *parts)
+
+    return made() if felt else equations.remembered(joint, made)

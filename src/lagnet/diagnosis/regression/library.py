@@ -108,6 +108,27 @@ class Library:
             for own in self.local
         )
 
+    @cached_property
+    def by_width(self) -> tuple[list[tuple[np.ndarray, np.ndarray]], ...]:
+        """For each joint its hypotheses of one width: their places among the local ones, and columns (m, w)."""
+        return tuple(
+            [self._of_width(j, w) for w in sorted({self.widths[i] for i in own})] for j, own in enumerate(self.local)
+        )
+
+    def _of_width(self, joint: int, width: int) -> tuple[np.ndarray, np.ndarray]:
+        own = self.local[joint]
+        places = np.array([n for n, i in enumerate(own) if self.widths[i] == width])
+        starts = np.array([self.slots[joint][own[n]].start for n in places])
+        return places, starts[:, None] + np.arange(width)
+
+    @cached_property
+    def barred(self) -> tuple[np.ndarray, ...]:
+        """For each joint, which of its hypotheses may not stand together, shape (m, m)."""
+        return tuple(
+            np.array([[(i, k) in pairs for k in own] for i in own], dtype=bool).reshape(len(own), len(own))
+            for own, pairs in zip(self.local, self._incompatible, strict=True)
+        )
+
     def bounds_at(self, joint: int) -> tuple[np.ndarray, np.ndarray]:
         """Least and largest coefficients of a joint's columns, each of shape (width,)."""
         return self._bounds[joint]

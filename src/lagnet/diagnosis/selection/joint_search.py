@@ -56,6 +56,23 @@ class JointView:
         evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
         return evidence - sum(self.limits.penalty(*self.equations.library.freedom[i]) for i in selection)
 
+    def scores_with_each(self, selection: Sequence[int]) -> np.ndarray:
+        """log P(S ∪ {k}) for every hypothesis k of the joint, shape (m,); −∞ where k may not stand beside S."""
+        errors, feasible = self.system.with_each(selection)
+        library = self.equations.library
+        local = library.local[self.joint]
+        floor = np.maximum(errors, max(1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300))
+        evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
+        barred = library.barred[self.joint][:, [local.index(i) for i in selection]].any(axis=1)
+        penalty = self._penalties + sum(self.limits.penalty(*library.freedom[i]) for i in selection)
+        return np.where(feasible & ~barred, evidence - penalty, -np.inf)
+
+    @property
+    def _penalties(self) -> np.ndarray:
+        library = self.equations.library
+        made = lambda: np.array([self.limits.penalty(*library.freedom[i]) for i in library.local[self.joint]])  # noqa: E731
+        return self.equations.remembered(("penalties", self.joint), made)
+
     def remembered(self, what: Hashable, make: Callable[[], tuple[int, ...]]) -> tuple[int, ...]:
         """A selection that `make` finds on this system under these scales, found once."""
         key = (what, self.inefficiency, self.noise_power, self.torque_power)
@@ -105,8 +122,8 @@ def _rich_start(view: JointView) -> tuple[int, ...]:
     library = view.equations.library
     selection: tuple[int, ...] = ()
     plain = [i for i in library.local[view.joint] if not library.hypotheses[i].shape]
-    view.system.judge_additions((), plain)
-    order = sorted(plain, key=lambda i: view.error([i]))
+    errors = dict(zip(library.local[view.joint], view.system.with_each(())[0], strict=True))
+    order = sorted(plain, key=lambda i: errors[i])
     for i in order:
         if compatible(view, selection, i) and np.isfinite(view.score((*selection, i))):
             selection = (*selection, i)
@@ -117,9 +134,8 @@ def improve(view: JointView, start: tuple[int, ...]) -> tuple[int, ...]:
     """Adds, drops and exchanges hypotheses while log P grows."""
     selection, score = start, view.score(start)
     for _ in range(ROUNDS):
-        for moves in (plain_moves, exchanges):  # exchanges are many: only where nothing else helps
-            found = [(view.score(s), s) for s in moves(view, selection)]
-            best_score, best = max(found, key=lambda m: m[0], default=(-np.inf, selection))
+        for best_move in (best_plain_move, best_exchange):  # exchanges are many: only where nothing else helps
+            best_score, best = best_move(view, selection)
             if best_score > score + 1e-9:
                 selection, score = best, best_score
                 break
@@ -173,23 +189,36 @@ def drop_immaterial(view: JointView, selection: tuple[int, ...]) -> tuple[int, .
         selection = tuple(i for i in selection if i != worst)
 
 
-def plain_moves(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Selections with one hypothesis dropped or added."""
-    dropped = [tuple(k for k in selection if k != i) for i in selection]
-    return dropped + _with_one_more(view, selection, selection)
+Move = tuple[float, tuple[int, ...]]
+"""A selection with its log P."""
 
 
-def exchanges(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Selections with one hypothesis in the place of another."""
-    dropped = [tuple(k for k in selection if k != i) for i in selection]
-    return [other for base in dropped for other in _with_one_more(view, base, selection)]
+def best_plain_move(view: JointView, selection: tuple[int, ...]) -> Move:
+    """The best selection with one hypothesis dropped or added."""
+    dropped = [(view.score(s), s) for s in without_each(selection)]
+    return max([*dropped, best_addition(view, selection, selection)], key=lambda m: m[0])
 
 
-def _with_one_more(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]) -> list[tuple[int, ...]]:
+def best_exchange(view: JointView, selection: tuple[int, ...]) -> Move:
+    """The best selection with one hypothesis in the place of another."""
+    found = [best_addition(view, base, selection) for base in without_each(selection)]
+    return max(found, key=lambda m: m[0], default=(-np.inf, selection))
+
+
+def without_each(selection: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Selections with one hypothesis dropped."""
+    return [tuple(k for k in selection if k != i) for i in selection]
+
+
+def best_addition(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]) -> Move:
+    """The best selection with one hypothesis added that is none of those tried already."""
     local = view.equations.library.local[view.joint]
-    added = [i for i in local if i not in tried and compatible(view, base, i)]
-    view.system.judge_additions(base, added)
-    return [(*base, i) for i in added]
+    if not local:
+        return -np.inf, base
+    scores = view.scores_with_each(base)
+    scores[[local.index(i) for i in tried]] = -np.inf
+    best = int(np.argmax(scores))
+    return float(scores[best]), (*base, local[best])
 
 
 def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
