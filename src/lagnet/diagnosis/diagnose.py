@@ -10,6 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.data_quality.inspect import refused_with, screened_for
+from lagnet.diagnosis.free_bodies import against_given
 from lagnet.diagnosis.holdout_torque import HoldoutTorque
 from lagnet.diagnosis.layers import correct
 from lagnet.diagnosis.nominal.axis_offsets import settle_axis_offsets
@@ -17,8 +18,8 @@ from lagnet.diagnosis.nominal.conventions import refuse_other_conventions
 from lagnet.diagnosis.pipeline import Inputs, run_pipeline, with_misspecification
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.noise_floor import noise_floor
-from lagnet.diagnosis.problem.problem import pose_problem
-from lagnet.diagnosis.reruns import best_band, on_one_clock, settle_transients
+from lagnet.diagnosis.problem.problem import Problem, pose_problem
+from lagnet.diagnosis.reruns import beside_links, best_band, on_one_clock, settle_transients
 from lagnet.diagnosis.rules.catalogue import RULES
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.settings import DecisionLimits
@@ -120,10 +121,15 @@ def diagnose(
         noise = noise_floor(problem, fit, seed)
         noise = noise if known is None else np.hypot(noise, known)
         given = Inputs(fit, unseen, noise, rules, seed)
-        return settle_transients(run_pipeline(problem, given), lambda part: run_pipeline(part, given))
+
+        def run(part: Problem) -> DiagnosisState:
+            return run_pipeline(part, given)
+
+        return beside_links(settle_transients(run(problem), run), lambda free: settle_transients(run(free), run))
 
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     state = with_misspecification(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
+    state = against_given(state)
     correction = correct(state, held, ends_of)
     evidence = collect_report_data(state, fit_on, held, correction.model)
     verdict = compose_verdict(state, fit_on, held)

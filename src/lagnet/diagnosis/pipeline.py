@@ -10,6 +10,12 @@ import numpy as np
 from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
 from lagnet.diagnosis.estimation.misspecification import misspecification_errors, widened, with_convention
 from lagnet.diagnosis.estimation.refit import Refit
+from lagnet.diagnosis.free_bodies import (
+    are_scaled_everywhere,
+    beside_free_bodies,
+    bodies_are_refuted,
+    gains_among,
+)
 from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
 from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
 from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
@@ -51,8 +57,13 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
         equations.library, collect_block_grams(problem, equations.library, problem.holdout), problem.limits
     )
     first = Candidate(problem, equations, unseen, found, given.noise, given.seed)
-    left = apply_rules(given.rules, first)
-    candidate, rejected = left.candidate, left.rejected
+    left = apply_rules([r for r in given.rules if not r.after_refit], first)
+    beside = None if problem.given is not None else _beside_free_links(left.candidate, given)
+    if beside is not None:
+        return beside
+    rejected = left.rejected
+    left = apply_rules([r for r in given.rules if r.after_refit], left.candidate)
+    candidate, rejected = left.candidate, (*rejected, *left.rejected)
     comparisons = _comparisons(candidate)
     ambiguous = ambiguous_causes(equations.library, comparisons, problem.limits.most_names)
     if ambiguous:
@@ -77,6 +88,18 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
         rejected,
         ambiguous=tuple(ambiguous.values()),
     )
+
+
+def _beside_free_links(candidate: Candidate, given: Inputs) -> DiagnosisState | None:
+    """The results beside inertial parameters of all links; None where those of few links do as well."""
+    refuted = bodies_are_refuted(candidate)
+    if not refuted and not are_scaled_everywhere(candidate):
+        return None
+    free = beside_free_bodies(candidate.problem)
+    if free is None:
+        return None
+    beside = run_pipeline(free, given)
+    return beside if refuted or 2 * gains_among(beside.effects) <= gains_among(candidate.effects) else None
 
 
 def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:

@@ -14,9 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, with_nominal
+from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
-from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
+from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, lasting, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
+from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.differing_recordings import differing_recordings, lasting_loads, without_loads
@@ -36,13 +39,29 @@ SUSPECT = 2.0  # times the gain of the next best interval, from which the pipeli
 LOOKS = 3  # alternations between event intervals and persistent effects, at most
 
 
+def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
+    """The first run, or one beside the parameters of all links where these explain what names leave unexplained.
+
+    Args:
+        again: another run on the same recordings against another nominal model.
+    """
+    if first.problem.given is not None or not is_puzzled(first) or not is_identified(first):
+        return first
+    free = beside_free_bodies(first.problem)
+    if free is None:
+        return first
+    second = again(free)
+    return first if is_puzzled(against_given(second)) else second
+
+
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
     """The first run, or the one in a narrower band that predicts held-out torque much better below that band.
 
     Args:
         at: a run on the same recordings at a given bandwidth [Hz].
     """
-    if not is_puzzled(first):
+    given = against_given(first)
+    if not is_puzzled(given) or is_identified(given):
         return first
     tried = [first, *_narrower(first.fit.bandwidth, at)]
     events = [s for one in tried for s in one.events]
@@ -56,6 +75,25 @@ def is_puzzled(state: DiagnosisState) -> bool:
     limits = (CLEARLY * state.noise) ** 2
     left = zip(state.remainders, limits, strict=True)
     return any(joint.above and joint.share > PUZZLING and joint.power > limit for joint, limit in left)
+
+
+def is_identified(state: DiagnosisState) -> bool:
+    """Whether bodies and functions of motion without a name explain what is left: then nothing drowns what holds."""
+    found = identify(lasting(state.problem, state.events), state.effects)
+    if found is None:
+        return False
+    problem = state.problem
+    model = replace(state.corrected, identified=found.layer)
+    rest = [
+        problem.reduce(p, p.tau - replace(model, recording=p.origin).torque_along(p.time, p.q, p.v, p.a))
+        for p in problem.holdout
+    ]
+    nominal, valid = stacked(problem, problem.holdout)
+    before, after = (
+        np.sum((r * valid) ** 2, axis=0) / np.maximum(1, valid.sum(axis=0)) for r in (nominal, np.concatenate(rest))
+    )
+    floor = state.noise**2
+    return bool(np.all((after <= CLEARLY**2 * floor) | (after - floor <= PUZZLING * (before - floor))))
 
 
 def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[DiagnosisState]:
@@ -76,6 +114,7 @@ def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventI
     Event intervals that have no name in any run are not valid in all of them.
     """
     clean = set_aside(judge.problem, events)
+    clean = clean if clean.nominal is state.problem.nominal else with_nominal(clean, state.problem.nominal)
     problem = replace(clean, slow=state.problem.slow, straight=state.problem.straight, held=state.problem.held)
     rest, counts = [], []
     for piece in problem.holdout:

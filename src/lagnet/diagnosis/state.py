@@ -44,6 +44,7 @@ class DiagnosisState:
         transients: effects that act for a while only.
         events: intervals in which something without a name acts.
         ambiguous: causes that too many names explain equally.
+        judged: the problem with free links beside which the names were judged; None: `problem`.
     """
 
     problem: Problem
@@ -62,6 +63,7 @@ class DiagnosisState:
     transients: tuple[Transient, ...] = ()
     events: tuple[EventInterval, ...] = ()
     ambiguous: tuple[AmbiguousCause, ...] = ()
+    judged: Problem | None = None
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -75,8 +77,8 @@ class DiagnosisState:
 
     @cached_property
     def after(self) -> Remainder:
-        """Residuals of the corrected model."""
-        return remainder_of(self.problem, self.effects)
+        """Residuals of the corrected model, its links as free as the names were judged."""
+        return remainder_of(self.judged or self.problem, self.effects)
 
     @cached_property
     def remainders(self) -> tuple[JointRemainder, ...]:

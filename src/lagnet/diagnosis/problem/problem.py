@@ -76,6 +76,7 @@ class Problem:
         missed: shape (dof,), torque that the nominal model is known to miss, root mean square; None: not known [N m].
         limits: where the diagnosis decides.
         known: effects by which the load differs from the nominal one, for the columns of effects that act on it.
+        given: the model as it was given, where `nominal` has links as the recordings determine them; None: `nominal`.
     """
 
     nominal: InverseDynamics
@@ -91,6 +92,7 @@ class Problem:
     known: tuple[NamedEffect, ...] = ()
     straight: np.ndarray | None = None
     limits: DecisionLimits = field(default_factory=DecisionLimits)
+    given: InverseDynamics | None = None
 
     @property
     def n_dof(self) -> int:

@@ -226,6 +226,8 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
     widths: list[int] = []
     abstentions: list[Abstention] = []
     for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
+        if effect.is_body and problem.given is not None:  # the links are free already
+            continue
         for joint in _places(effect, problem.n_dof):
             seen = _as_seen(summary, problem.known, effect)
             reason = _reason_against(effect, seen, joint, has_bodies)

@@ -34,6 +34,12 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 from lagnet.types import joint_types_of
 
+BESIDE_FREE_LINKS = (
+    "several links differ from the model: no few bodies that can exist explain this motion. Causes were judged beside "
+    "the inertial parameters of all links as these recordings determine them; these parameters stand in the identified "
+    "layer, and the error of the named layer is without them"
+)
+
 
 def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:
     """All parts of the verdict."""
@@ -85,6 +91,7 @@ def _warnings(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Re
         *words_on_time(state, fit, held),
         *clock_shift_words(state.fit),
         *tonal_noise_words(state.fit, state.problem.joints),
+        *(() if state.judged is None else (BESIDE_FREE_LINKS,)),
     )
 
 

@@ -1,0 +1,90 @@
+"""τ_nominal + Y Δπ: names judged beside inertial parameters of all links, where no few real bodies explain the motion.
+
+A link that is fitted alone takes over what its neighbours lack. Where several links are wrong, the fitted parameters
+belong to no real body, and a real body in their place leaves far more than the noise. Friction, offsets and gains are
+then judged against the nominal model with all links as the recordings determine them, and the changes of the links are
+identified, not attributed to one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.model import torque_along
+from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.rigid_body.inertia import is_physically_consistent
+from lagnet.types import InverseDynamics, RobotModel, is_robot_model
+
+FAR = 4.0  # times the mean square residual of free parameters, beyond which real bodies leave more than chance
+MOST = 0.3  # of the nominal mean square residual that they may leave at a joint
+
+
+def bodies_are_refuted(candidate: Candidate) -> bool:
+    """Whether the selected bodies, made real, leave a joint mean r² > max(4 σ², 0.3 r²_nominal).
+
+    σ² is the mean square residual of free parameters, or the noise.
+    """
+    if not any(effect_named(e.effect).is_body for e in candidate.effects):
+        return False
+    valid = np.concatenate([p.counts for p in candidate.segments("fit")])
+    power, nominal = (
+        np.sum(candidate.residual("fit", effects) ** 2, axis=0) / np.maximum(1, valid.sum(axis=0))
+        for effects in (None, ())
+    )
+    return bool(np.any(power > np.maximum(FAR * candidate.sigma**2, MOST * nominal)))
+
+
+def are_scaled_everywhere(candidate: Candidate) -> bool:
+    """Whether a link changes and half of the joints or more have a gain: links all scaled give each joint a gain."""
+    links = [e for e in candidate.effects if effect_named(e.effect).changes_link]
+    return bool(links) and 2 * gains_among(candidate.effects) >= candidate.problem.n_dof > 1
+
+
+def gains_among(effects: Sequence[NamedEffect]) -> int:
+    """The number of torque gains."""
+    return sum(e.effect == "torque_gain" for e in effects)
+
+
+def beside_free_bodies(problem: Problem) -> Problem | None:
+    """The problem with the links as the fitted recordings determine them; None where no real links do better.
+
+    Args:
+        problem: recordings and nominal model as given.
+    """
+    if not is_robot_model(problem.nominal):
+        return None
+    found = identify(problem, ())
+    if found is None or found.layer.bodies is None:
+        return None
+    robot: RobotModel = problem.nominal
+    parameters = robot.inertial_parameters() + found.layer.bodies
+    if not np.all(is_physically_consistent(parameters)):
+        return None
+    posed = with_nominal(problem, robot.with_inertial_parameters(parameters))
+    return replace(posed, given=problem.nominal)
+
+
+def with_nominal(problem: Problem, nominal: InverseDynamics) -> Problem:
+    """The same recordings held against another nominal model."""
+
+    def posed(piece: Segment) -> Segment:
+        return replace(piece, load=torque_along(nominal, piece.time, piece.q, piece.v, piece.a))
+
+    fit, holdout = tuple(map(posed, problem.fit)), tuple(map(posed, problem.holdout))
+    return replace(problem, nominal=nominal, fit=fit, holdout=holdout, known=())
+
+
+def against_given(state: DiagnosisState) -> DiagnosisState:
+    """The results held against the model as it was given; what remains stays that beside free links."""
+    problem = state.problem
+    if problem.given is None:
+        return state
+    return replace(state, problem=replace(with_nominal(problem, problem.given), given=None), judged=problem)

@@ -1,0 +1,62 @@
+"""Where most links are wrong, what else is missing is judged beside the parameters of all links."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.diagnosis.free_bodies import against_given
+from lagnet.diagnosis.verdict.compose import BESIDE_FREE_LINKS
+from lagnet.rigid_body.random_arm import random_arm
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("free_bodies")]
+
+JOINTS = 5
+SHARP = 1e-3  # [rad/s]
+SIZES = {"coulomb_friction": ("Fc", 2.0), "viscous_friction": ("Fv", 0.5)}
+NOISE = 3e-5  # of the torque's variance, beyond its noise
+
+
+def friction(q: np.ndarray, v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Coulomb friction at the second joint, viscous friction at the last."""
+    out = np.zeros_like(v)
+    out[:, 1] = 2.0 * np.tanh(v[:, 1] / SHARP)
+    out[:, -1] = 0.5 * v[:, -1]
+    return out
+
+
+@pytest.fixture(scope="module")
+def found(plant) -> Diagnosis:
+    """An arm whose links all have other parameters than its model says."""
+    arm = random_arm(JOINTS, seed=3, kinds=("revolute",), fixed=False)
+    factors = np.random.default_rng(3).uniform(0.5, 2.0, (JOINTS, 1))
+    real = plant(friction, robot=arm.with_inertial_parameters(arm.inertial_parameters() * factors))
+    return diagnose([real.record(1, 40.0), real.record(2, 40.0)], arm, [real.record(3, 40.0)])
+
+
+def test_friction_is_named_and_no_gain_stands_for_the_links(found) -> None:
+    joints = found.verdict.fit[1].joint, found.verdict.fit[-1].joint
+    assert {(e.effect, e.joint) for e in found.effects} == set(zip(SIZES, joints, strict=True))
+    for effect in found.effects:
+        name, size = SIZES[effect.effect]
+        assert effect.value(name) == pytest.approx(size, rel=0.03)
+
+
+def test_the_links_stand_in_the_identified_layer(found) -> None:
+    for fit in found.verdict.fit:
+        assert fit.nmse_identified <= fit.nmse_noise_floor + NOISE
+    assert found.corrected.identified is not None
+    assert np.abs(found.corrected.identified.bodies).max() > 0.1
+
+
+def test_errors_are_those_of_the_model_that_was_given(found) -> None:
+    nominal = found.state.problem.nominal
+    assert nominal is found.corrected.nominal
+    assert found.state.judged is not None
+    assert found.state.judged.nominal is not nominal
+    assert against_given(found.state) is found.state
+
+
+def test_the_verdict_says_beside_what_the_names_were_judged(found) -> None:
+    assert BESIDE_FREE_LINKS in found.verdict.warnings
