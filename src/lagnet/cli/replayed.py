@@ -50,8 +50,8 @@ def replay_held_out(result: Diagnosis, settings: ReplaySettings, out: Path) -> R
     held = list(result.holdout_recordings)
     say(f"replaying held-out recordings in {settings.engine}")
     longest = min(LONGEST, max(SHORTEST, TOTAL / len(held)))
-    corrected = result.corrected
-    replayed = before_and_after(corrected, held, replace(settings, longest=longest), corrected.nominal)
+    nominal: Any = result.corrected.nominal  # the engine took it before the diagnosis
+    replayed = before_and_after(result.corrected, held, replace(settings, longest=longest), nominal)
     write_replay(replayed, out)
     say_replay(replayed)
     return ReplayData(replayed.to_json(), columns_of(replayed))
