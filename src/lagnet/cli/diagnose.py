@@ -99,9 +99,10 @@ def command(
         ]
         for paths in (recordings, holdout or [])
     ]
-    simulator = replay_settings(replay, model, kp, kd)
+    on_motion = bool(robot) and route_of(route, [*read[0], *read[1]]) == "motion"
+    simulator = replay_settings(replay, model, kp, kd, on_motion)
     say(f"{sum(map(len, read))} recordings read, diagnosing")
-    if robot and route_of(route, [*read[0], *read[1]]) == "motion":
+    if on_motion:
         factors = numbers(gains, "--gains") if gains else None
         return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)

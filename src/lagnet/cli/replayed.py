@@ -15,17 +15,24 @@ if TYPE_CHECKING:
 TOTAL, LONGEST, SHORTEST = 60.0, 30.0, 2.0  # [s] replayed of all recordings together; of one, at most and at least
 
 
-def replay_settings(engine: str | None, model: Any, kp: str | None, kd: str | None) -> ReplaySettings | None:
+def replay_settings(
+    engine: str | None, model: Any, kp: str | None, kd: str | None, on_motion: bool
+) -> ReplaySettings | None:
     """How held-out recordings are replayed, once the engine has taken the nominal model; None where none is given.
 
     Raises:
-        LagnetError: an unknown engine, a model without bodies, only one of the gains, or gains without an engine.
+        LagnetError: an unknown engine, a model without bodies, only one of the gains, gains without an engine, or a
+            diagnosis on motion, whose servos no exporter writes.
         MissingExtraError: the engine is not installed.
     """
     if engine is None:
         if kp or kd:
             raise LagnetError("gains are those of a replay", where="--kp, --kd", next_step="give --replay too")
         return None
+    if on_motion:
+        what = "the servos of a diagnosis on motion are not written for simulators"
+        step = "leave it out: the report shows rollouts of the commands, nominal and corrected, by lagnet itself"
+        raise LagnetError(what, where="--replay", next_step=step)
     from lagnet.cli.replay import servo_of
     from lagnet.simulators.replay import ReplaySettings, started
 
