@@ -81,3 +81,11 @@ def test_motion_is_refused_without_commands(diagnosed, capsys):
     assert main([*words, "--out", str(diagnosed / "none")]) == 2
     assert "command_i" in capsys.readouterr().err
     assert not (diagnosed / "none").exists()
+
+
+def test_a_replay_in_a_simulator_is_refused_before_the_diagnosis(diagnosed, tmp_path, capsys):
+    words = ["diagnose", str(diagnosed / "run_1.csv"), "--robot", str(diagnosed / "robot.xml"), "--replay", "mujoco"]
+    assert main([*words, "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "on motion" in line
+    assert not (tmp_path / "out").exists()

@@ -8,6 +8,7 @@ from tests.tracking.fleets import START, observations
 
 from lagnet.tracking.statistics.analyse import analyse
 from lagnet.tracking.statistics.change_points import column_of
+from lagnet.tracking.statistics.covariates import KELVIN, fit_covariates
 from lagnet.tracking.statistics.pooling import pool
 from lagnet.tracking.statistics.series import series_of
 
@@ -15,15 +16,17 @@ N = 12
 NOISE = 0.01  # relative scatter of a parameter, as its intervals say
 
 
-def fleet(rng: np.random.Generator, robots: int = 8, warm: tuple[int, ...] = (0, 1, 2)) -> dict[str, tuple]:
-    """Values and temperatures of robots whose friction falls by about 2 % a kelvin; some warm up by 10 K."""
+def fleet(
+    rng: np.random.Generator, robots: int = 8, warm: tuple[int, ...] = (0, 1, 2), thermometer: float = 0.0
+) -> dict[str, tuple]:
+    """Values and temperatures told of robots whose friction falls by about 2 % a kelvin; some warm up by 10 K."""
     out = {}
     for r in range(robots):
         temperature = 25.0 + rng.normal(0.0, 0.7, N) + (10.0 * np.linspace(0.0, 1.0, N) if r in warm else 0.0)
         slope = -0.02 * rng.lognormal(0.0, 0.2)
         level = rng.lognormal(0.0, 0.07)
         values = level * np.exp(slope * (temperature - 25.0) + NOISE * rng.standard_normal(N))
-        out[f"arm_{r}"] = (values, temperature)
+        out[f"arm_{r}"] = (values, temperature + thermometer * rng.standard_normal(N))
     return out
 
 
@@ -48,6 +51,23 @@ def test_step_and_drift_are_told_apart_and_dated():
 def test_warmth_is_no_wear():
     told = [analyse(flat(fleet(np.random.default_rng(seed)))).events for seed in range(12)]
     assert sum(map(len, told)) <= 1  # a rate of 1 % over twelve fleets: two would have a chance below 1 %
+
+
+def test_slopes_are_not_flattened_by_errors_of_the_thermometer():
+    """Steady robots alone: temperatures vary by 0.7 K, the thermometer errs by 0.5 K."""
+    slopes = []
+    for seed in range(20):
+        robots = fleet(np.random.default_rng(seed), robots=16, warm=(), thermometer=0.5)
+        (group,) = series_of(flat(robots)).values()
+        slopes.append(fit_covariates(group, thermometer=0.5).slopes[0] / KELVIN)
+    error = np.std(slopes) / np.sqrt(len(slopes))
+    assert np.mean(slopes) == pytest.approx(-0.02 * np.exp(0.02), abs=4 * error)  # e^(0.2²/2): mean of the lognormal
+    assert error < 0.0015
+
+
+def test_warmth_told_by_a_poor_thermometer_is_no_wear():
+    told = [analyse(flat(fleet(np.random.default_rng(seed), robots=16, thermometer=0.5))).events for seed in range(20)]
+    assert sum(map(len, told)) <= 1
 
 
 def test_without_temperature_a_change_says_so():

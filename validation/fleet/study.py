@@ -1,6 +1,7 @@
 """Changes of a concealed fleet against what was told of it.
 
 python -m validation.fleet.study [--quick] [--work FOLDER] [--workers N] [--seed S] [--search every|unusual]
+                                  [--result FILE]
 """
 
 from __future__ import annotations
@@ -90,6 +91,7 @@ def main() -> int:
     parser.add_argument("--workers", type=int, help="processes; else one a core")
     parser.add_argument("--seed", type=int, default=2025)
     parser.add_argument("--search", default="unusual", choices=("every", "unusual"))
+    parser.add_argument("--result", type=Path, default=HERE / "result.json", help="of a full run")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         found = run(options.work or Path(scratch), QUICK if options.quick else FULL, options)
@@ -99,7 +101,7 @@ def main() -> int:
     passed = all(line["passed"] for line in lines)
     if not options.quick:
         result = {"study": "fleet", "version": lagnet.__version__, "passed": passed, **found, "lines": lines}
-        (HERE / "result.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+        options.result.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     return 0 if passed else 1
 
 

@@ -58,6 +58,12 @@ def command(
     mcap: Annotated[
         Path | None, typer.Option(help="Write torques and verdict for Foxglove, PlotJuggler and Rerun to this file.")
     ] = None,
+    replay: Annotated[
+        str | None,
+        typer.Option(help="mujoco or pybullet: held-out recordings in it, before and after correction, in the report."),
+    ] = None,
+    kp: Annotated[str | None, typer.Option(help="With --replay of commands: gains [N m/rad], comma-separated.")] = None,
+    kd: Annotated[str | None, typer.Option(help="With --replay of commands: gains [N m s/rad].")] = None,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Say where recordings and robot differ, and name the physics that was left out."""
@@ -70,6 +76,7 @@ def command(
         raise LagnetError("--hold holds joints of --robot; a simulator's recordings have those that they have")
     from lagnet.cli.console import above_zero, not_negative, numbers, say
     from lagnet.cli.motion import diagnose_on_motion, route_of
+    from lagnet.cli.replayed import replay_held_out, replay_settings
     from lagnet.cli.simulated import nominal_from
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.nominal.log_alignment import lay_side_by_side
@@ -92,8 +99,10 @@ def command(
         ]
         for paths in (recordings, holdout or [])
     ]
+    on_motion = bool(robot) and route_of(route, [*read[0], *read[1]]) == "motion"
+    simulator = replay_settings(replay, model, kp, kd, on_motion)
     say(f"{sum(map(len, read))} recordings read, diagnosing")
-    if robot and route_of(route, [*read[0], *read[1]]) == "motion":
+    if on_motion:
         factors = numbers(gains, "--gains") if gains else None
         return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
@@ -104,6 +113,9 @@ def command(
         say(f"MCAP: {write_mcap_of(result, mcap)}")
     evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
     write_report(result.verdict.to_dict(), evidence, out / "report.html")
+    if simulator:
+        replayed = replay_held_out(result, simulator, out)
+        write_report(result.verdict.to_dict(), evidence, out / "report.html", replayed)
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:

@@ -11,6 +11,7 @@ from lagnet.cli.robots import HELP, load_models
 from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
+    from lagnet.simulators.before_after import BeforeAfter
     from lagnet.simulators.replay import Servo
 
 
@@ -43,17 +44,25 @@ def command(
     result = before_and_after(model, read, settings)
     summary, table = write_replay(result, out)
     page = write_replay_report(summary, table, out / "report.html")
-    for i, joint in enumerate(result.joints):
-        after = "" if result.after is None else f", {result.after.rmse()[i]:.3g} after"
-        say(f"{joint}: error {result.before.rmse()[i]:.3g} rad{' before' if after else ''}{after}")
-    if result.before.horizon is not None:
-        after = (
-            ""
-            if result.after is None or result.after.horizon is None
-            else f", {result.after.horizon.median:.2f} s after"
-        )
-        say(f"torques alone stay within {tolerance:g} rad for {result.before.horizon.median:.2f} s{after} (median)")
+    say_replay(result)
     say(f"report: {page}")
+
+
+def say_replay(result: BeforeAfter) -> None:
+    """Errors by joint and horizons, a line each."""
+    from lagnet.cli.console import say
+
+    before, after = result.before, result.after
+    for i, joint in enumerate(result.joints):
+        mended = "" if after is None else f" before, {after.rmse()[i]:.3g} after"
+        say(f"{joint}: error {before.rmse()[i]:.3g} {result.units[i]}{mended}")
+    if before.horizon is None:
+        return
+    drive = "commands" if before.runs[0].commanded else "torques"
+    unit = " or ".join(sorted(set(result.units), reverse=True))
+    mended = "" if after is None or after.horizon is None else f" before, {after.horizon.median:.2f} s after"
+    within = f"{before.settings.tolerance:g} {unit}"
+    say(f"{drive} alone stay within {within} for {before.horizon.median:.2f} s{mended} (median)")
 
 
 def servo_of(kp: str | None, kd: str | None) -> Servo | None:

@@ -9,6 +9,7 @@ from typing import Any
 from lagnet.diagnosis.verdict.report_data import ReportData
 from lagnet.reports.findings import Findings
 from lagnet.reports.page import Section, write_page
+from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.sections import (
     abstentions,
     arm,
@@ -25,6 +26,7 @@ from lagnet.reports.sections import (
     rivals,
     unexplained,
     where,
+    your_simulator,
 )
 from lagnet.reports.wording import counted, file_name
 
@@ -36,6 +38,7 @@ SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
     fit.build,
     arm_view.build,
     joints.build,
+    your_simulator.of_diagnosis,
     overlay.build,
     where.build,
     rivals.build,
@@ -48,18 +51,21 @@ SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
 )
 
 
-def write_report(verdict: Mapping[str, Any], evidence: ReportData, path: str | Path) -> Path:
+def write_report(
+    verdict: Mapping[str, Any], evidence: ReportData, path: str | Path, replay: ReplayData | None = None
+) -> Path:
     """Write the diagnosis as one self-contained HTML page.
 
     Args:
         verdict: valid under verdict.schema.json.
         evidence: the arrays behind it; what is absent is left out.
         path: the file to write; replaced in one step.
+        replay: held-out recordings through the user's simulator, before and after; None: they were not replayed.
 
     Returns:
         The file that was written.
     """
-    findings = Findings(verdict, evidence)
+    findings = Findings(verdict, evidence, replay)
     parts = [part for part in (build(findings) for build in SECTIONS) if part is not None]
     return write_page(path, "Simulation against recordings", _subtitle(verdict), parts)
 

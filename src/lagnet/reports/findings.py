@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lagnet.diagnosis.verdict.report_data import JointEvidence, ReportData
+from lagnet.reports.replay_data import ReplayData
 
 WHOLE_ARM = "the whole arm"
 
@@ -18,10 +19,12 @@ class Findings:
     Args:
         verdict: valid under verdict.schema.json.
         evidence: the arrays behind it; whatever is absent is left out of the page.
+        replay: the held-out recordings through the user's simulator, where they were replayed.
     """
 
     verdict: Mapping[str, Any]
     evidence: ReportData
+    replay: ReplayData | None = None
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -8,8 +8,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 
 from lagnet.reports.page import write_page
+from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.sections import your_simulator
-from lagnet.reports.sections.your_simulator import ReplayData
 from lagnet.reports.wording import counted
 
 

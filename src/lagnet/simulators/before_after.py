@@ -21,6 +21,7 @@ from lagnet.simulators.replay import Replay, ReplaySettings, bare_robot, replay,
 JSON, TABLE = "replay.json", "replay.parquet"
 SCHEMA = "lagnet-replay/1"
 CHECKED = 10.0  # [s] of each recording over which engine and corrected model are compared
+TABLE_RATE = 200.0  # [Hz] at most of the trajectories that are kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +31,12 @@ class BeforeAfter:
     Args:
         before: the nominal model.
         after: the corrected one; None where only a nominal model was given.
+        units: of each joint's position: rad or m.
     """
 
     before: Replay
     after: Replay | None
+    units: tuple[str, ...]
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -51,6 +54,7 @@ class BeforeAfter:
             "window_s": settings.window,
             "bandwidth_rad_s": None if self.before.runs[0].commanded else settings.bandwidth,
             "joints": list(self.joints),
+            "units": list(self.units),
             "recordings": [{"recording": r.recording, "seconds": _span(r.time)} for r in self.before.runs],
             "before": _figures(self.before),
             "after": None if self.after is None else _figures(self.after),
@@ -70,20 +74,31 @@ def _figures(result: Replay) -> dict[str, Any]:
     if result.horizon is not None:
         out["horizon_median_s"] = result.horizon.median
         out["horizons_s"] = [float(x) for x in result.horizon.seconds]
+        out["horizons_left"] = [bool(x) for x in result.horizon.left]
     return out
 
 
 def before_and_after(
-    model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings
+    model: Robot | CorrectedModel,
+    recordings: list[Recording],
+    settings: ReplaySettings,
+    nominal: Robot | CorrectedModel | None = None,
 ) -> BeforeAfter:
-    """Replay recordings through a corrected model and the robot under it; a robot alone has no after.
+    """Replay recordings through a corrected model and the one before it; a robot alone has no after.
+
+    Args:
+        model: the corrected model, or a robot.
+        recordings: of torques or commands.
+        settings: how they are replayed.
+        nominal: the model before; None: the robot under all corrections.
 
     Raises:
         LagnetError: what `replay` raises.
     """
-    nominal = bare_robot(model)
+    nominal = bare_robot(model) if nominal is None else nominal
     before = replay(nominal, recordings, settings)
-    return BeforeAfter(before, None if model is nominal else replay(model, recordings, settings))
+    units = tuple("m" if t == "prismatic" else "rad" for t in bare_robot(model).joint_types)
+    return BeforeAfter(before, None if model is nominal else replay(model, recordings, settings), units)
 
 
 def verify(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> dict[str, Any]:
@@ -97,13 +112,21 @@ def verify(model: Robot | CorrectedModel, recordings: list[Recording], settings:
 
 
 def write_replay(result: BeforeAfter, folder: str | Path) -> tuple[Path, Path]:
-    """Writes `replay.json` and `replay.parquet`: recording, time, q_measured_i, q_before_i, q_after_i."""
+    """Writes `replay.json` and `replay.parquet`, the latter with the columns of `columns_of`."""
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
     write_text(out / JSON, json.dumps(result.to_json(), indent=1, allow_nan=False) + "\n")
-    columns: dict[str, Any] = {
-        "recording": np.concatenate([[r.recording] * len(r.time) for r in result.before.runs]),
-        "time": np.concatenate([r.time for r in result.before.runs]),
+    pq.write_table(pa.table(columns_of(result)), out / TABLE, compression="zstd")
+    return out / JSON, out / TABLE
+
+
+def columns_of(result: BeforeAfter) -> dict[str, np.ndarray]:
+    """Trajectories at 200 Hz or less: recording, time, q_measured_i, q_before_i, q_after_i, each of shape (n,)."""
+    every = [max(1, round(1.0 / (TABLE_RATE * (r.time[1] - r.time[0])))) for r in result.before.runs]
+    times = [r.time[::k] for r, k in zip(result.before.runs, every, strict=True)]
+    columns: dict[str, np.ndarray] = {
+        "recording": np.concatenate([[r.recording] * t.size for r, t in zip(result.before.runs, times, strict=True)]),
+        "time": np.concatenate(times),
     }
     signals: Mapping[str, Any] = {
         "q_measured": [r.q_measured for r in result.before.runs],
@@ -111,7 +134,6 @@ def write_replay(result: BeforeAfter, folder: str | Path) -> tuple[Path, Path]:
         **({} if result.after is None else {"q_after": [r.q for r in result.after.runs]}),
     }
     for name, runs in signals.items():
-        values = np.concatenate(runs)
+        values = np.concatenate([q[::k] for q, k in zip(runs, every, strict=True)])
         columns |= {f"{name}_{i}": values[:, i] for i in range(values.shape[1])}
-    pq.write_table(pa.table(columns), out / TABLE)
-    return out / JSON, out / TABLE
+    return columns

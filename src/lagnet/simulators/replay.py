@@ -3,13 +3,15 @@
 Three replays. *Held*: the recorded torque, with soft feedback to the recorded motion, so that the whole recording can
 be laid over the simulation; what the model lacks shows as a deviation that the feedback balances. *Free*: the recorded
 torque alone, from measured positions and speeds at many starts, for as long as it stays near: the horizon. *Commanded*:
-where the recording holds commands and the servo's gains are given, rolled out from the first sample alone.
+where the recording holds commands and the servo's gains are given, rolled out from the first sample alone; its horizon
+is the time for which such a rollout stays near.
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -52,8 +54,8 @@ class ReplaySettings:
         rate: of the controller, which recorded signals are brought to [Hz].
         bandwidth: of the feedback of held replays [rad/s].
         tolerance: error of any joint at which a free rollout has left the recording [rad or m].
-        window: longest free rollout [s].
-        starts: free rollouts, spread over all recordings.
+        window: longest free rollout of recorded torques [s].
+        starts: free rollouts of recorded torques, spread over all recordings; 0: no horizon.
         longest: of each recording that is replayed [s].
         servo: gains of the position controller, for recordings of commands.
     """
@@ -92,17 +94,15 @@ class Replayed:
 
 @dataclass(frozen=True, eq=False)
 class Horizon:
-    """Free rollouts of recorded torques.
+    """How long rollouts without feedback to the recorded motion stayed near it.
 
     Args:
-        seconds: shape (starts,), time for which a rollout stayed within the tolerance; at most the window.
-        elapsed: shape (m,), time since the start [s].
-        error: shape (m, dof), root mean square error over the starts [rad]; nan after the shortest rollout.
+        seconds: shape (starts,), time for which a rollout stayed within the tolerance, or was followed.
+        left: shape (starts,), whether it left the tolerance; else it was within when the window or stretch ended.
     """
 
     seconds: np.ndarray
-    elapsed: Samples
-    error: Trajectory
+    left: np.ndarray
 
     @property
     def median(self) -> float:
@@ -137,15 +137,26 @@ def replay(model: Robot | CorrectedModel, recordings: list[Recording], settings:
         LagnetError: an unknown engine, other joints, or commands without the servo's gains.
         MissingExtraError: the engine is not installed.
     """
+    with started(model, settings) as (arm, engine):
+        return _replayed(arm, bare_robot(model), recordings, settings, settings.engine, _starter(engine))
+
+
+@contextmanager
+def started(model: Robot | CorrectedModel, settings: ReplaySettings) -> Iterator[tuple[ArmPhysics, Engine]]:
+    """A model's forward physics, and the engine that runs it, for as long as the context lasts.
+
+    Raises:
+        LagnetError: an unknown engine, or a model without bodies.
+        MissingExtraError: the engine is not installed.
+    """
     if settings.engine not in ENGINES:
         raise LagnetError(f"unknown engine {settings.engine!r}", where="--engine", choices=ENGINES)
-    arm, nominal = arm_physics(model), bare_robot(model)
-    exporter = exporter_named(FORMAT[settings.engine])
+    arm, exporter = arm_physics(model), exporter_named(FORMAT[settings.engine])
     with tempfile.TemporaryDirectory() as folder:
         exporter.write(arm, Path(folder))
         step = min(LONGEST_STEP, 1.0 / settings.rate)
         with engine_of(exporter.name, settings.engine, Path(folder), arm.robot.joints, step) as engine:
-            return _replayed(arm, nominal, recordings, settings, settings.engine, _starter(engine))
+            yield arm, engine
 
 
 def replay_reference(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> Replay:
@@ -182,6 +193,8 @@ def _replayed(
     runs = tuple(_run(drive, mover) for drive in drives)
     torques = [d for d in drives if not d.commanded]
     horizon = _horizon(torques, mover, settings) if torques and settings.starts else None
+    if not torques and settings.starts:
+        horizon = _stayed([(r.q - r.q_measured, r.time[1] - r.time[0]) for r in runs], settings.tolerance)
     return Replay(name, arm.robot.joints, runs, horizon, settings)
 
 
@@ -200,16 +213,21 @@ def _horizon(drives: list[RecordedDrive], mover: Mover, settings: ReplaySettings
     room = np.array([max(d.time.size - most, 1) for d in drives])
     at = np.linspace(0, room.sum() - 1, settings.starts).astype(int)
     edges = np.concatenate([[0], np.cumsum(room)])
-    seconds, errors = [], []
+    errors = []
     for start in at:
         i = int(np.searchsorted(edges, start, side="right") - 1)
-        error = _free(drives[i], int(start - edges[i]), most, mover, settings.tolerance)
-        left = np.flatnonzero(np.any(np.abs(error) > settings.tolerance, axis=1))
-        seconds.append((left[0] if left.size else len(error)) / settings.rate)
-        errors.append(error)
-    shortest = min(len(e) for e in errors)
-    spread = np.sqrt(np.mean([e[:shortest] ** 2 for e in errors], axis=0))
-    return Horizon(np.array(seconds), np.arange(shortest) / settings.rate, spread)
+        errors.append((_free(drives[i], int(start - edges[i]), most, mover, settings.tolerance), drives[i].step))
+    return _stayed(errors, settings.tolerance)
+
+
+def _stayed(errors: Sequence[tuple[Trajectory, float]], tolerance: float) -> Horizon:
+    """The horizon of rollouts by their errors, shape (steps, dof), and periods [s]."""
+    seconds, left = [], []
+    for error, step in errors:
+        outside = np.flatnonzero(np.any(~(np.abs(error) <= tolerance), axis=1))
+        seconds.append((outside[0] if outside.size else len(error)) * step)
+        left.append(outside.size > 0)
+    return Horizon(np.array(seconds), np.array(left, dtype=bool))
 
 
 def _free(drive: RecordedDrive, start: int, most: int, mover: Mover, tolerance: float) -> Trajectory:

@@ -5,7 +5,8 @@
 y is the parameter of one robot over time, X temperature [10 K] and relative load about those usual in the make, s the
 standard deviation of each fit, σ what differs from recording to recording beyond it. β and D come from all robots by
 expectation maximisation, with a drift and a step of each robot taken out: wear of one does not pass for warmth of all.
-A robot that only ever warmed up is thus judged by the slopes of its sisters. Source: laird1982, bittencourt2012.
+A robot that only ever warmed up is thus judged by the slopes of its sisters. Errors of the thermometer flatten a slope,
+most where temperature hardly varies; the slopes are corrected for that. Source: laird1982, fuller1987, bittencourt2012.
 """
 
 from __future__ import annotations
@@ -88,8 +89,8 @@ def fit_covariates(group: Sequence[Series], thermometer: float = THERMOMETER) ->
     slopes, covariance = np.zeros(2), np.diag((scale * WIDE) ** 2)
     for _ in range(3):
         variance = [inflation * v + w + extra for v, w in zip(own, warm, strict=True)]
-        slopes, covariance = _pooled(group, tables, nuisance, variance, scale)
-        warmth = float(slopes[0] ** 2) * (thermometer / KELVIN) ** 2
+        slopes, covariance = _pooled(group, tables, nuisance, variance, scale, thermometer / KELVIN)
+        warmth = float(slopes[0] ** 2 + covariance[0, 0]) * (thermometer / KELVIN) ** 2
         warm = [np.full(len(x), warmth * _is_warm(x)) for x in tables]
         inflation, extra, freedom = _scatter(group, tables, nuisance, own, warm, slopes)
     return CovariateModel(usual, slopes, covariance, inflation, extra, freedom, warmth)
@@ -147,6 +148,7 @@ def _pooled(
     nuisance: Sequence[np.ndarray],
     variance: Sequence[np.ndarray],
     scale: float,
+    thermometer: float,
 ) -> tuple[np.ndarray, np.ndarray]:
     """β, and the covariance of a robot's slopes about it: D and what is not known of β."""
     information, moments = [], []
@@ -154,8 +156,10 @@ def _pooled(
         root = 1.0 / np.sqrt(v)[:, None]
         q = np.linalg.qr(n * root)[0]
         free = x * root - q @ (q.T @ (x * root))
-        information.append(free.T @ free)
-        moments.append(free.T @ (series.value * root[:, 0]))
+        errors = thermometer**2 * float(np.sum((1.0 - np.sum(q**2, axis=1)) * root[:, 0] ** 2))
+        calibrated = _calibrated(free.T @ free, errors)
+        information.append(calibrated @ (free.T @ free) @ calibrated.T)
+        moments.append(calibrated @ free.T @ (series.value * root[:, 0]))
     known, total = np.array(information), np.array(moments)
     prior = np.diag((scale * WIDE) ** -2)
     usual = np.diag((scale * USUAL) ** 2)
@@ -172,6 +176,21 @@ def _pooled(
         spread = (scatter + USUAL_WEIGHT * usual) / (told.sum() + USUAL_WEIGHT)
     marginal = known @ np.linalg.inv(np.eye(2) + spread @ known)
     return mean, spread + np.linalg.inv(marginal.sum(axis=0) + prior)
+
+
+def _calibrated(power: np.ndarray, errors: float) -> np.ndarray:
+    """C = (K − N) K⁻¹ of regression calibration, shape (2, 2).
+
+    Errors of the thermometer make the moments Xᵀy = (K − N) b + noise of covariance K, smaller than K b: a slope taken
+    from K⁻¹ Xᵀy would be too flat. Source: fuller1987.
+
+    Args:
+        power: K = XᵀX, shape (2, 2).
+        errors: N for the temperature, what the thermometer's errors add to K.
+    """
+    true = power.copy()
+    true[0, 0] = max(power[0, 0] - errors, float(power[0, 1] ** 2 / power[1, 1]) if power[1, 1] > 0.0 else 0.0)
+    return true @ np.linalg.pinv(power, hermitian=True)
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:

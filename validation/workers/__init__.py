@@ -1,0 +1,1 @@
+"""One worker against two, memory of each, and what the scheduler costs. See README.md."""
