@@ -9,6 +9,8 @@ import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 FRICTION = 1.5  # [N m s/rad]
 RINGING, QUICK = 3.0, 5.0  # [N m], [Hz]
 

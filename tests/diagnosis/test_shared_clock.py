@@ -12,6 +12,8 @@ from tests.diagnosis.conftest import NOISE
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import holdout_table
 
+pytestmark = pytest.mark.slow
+
 HALF = 0.005  # [s] of a sample
 
 
@@ -36,7 +38,6 @@ def test_a_shift_that_all_joints_share_is_no_physics_of_theirs(plant, by):
     assert np.all(rest < 1.3 * NOISE * arm.usual_torque())
 
 
-@pytest.mark.slow
 def test_what_else_was_left_out_is_named_beside_it(plant, at):
     level = 0.2 * plant().usual_torque()[1]
     arm = plant(at(1, lambda q, v, a, load: level * np.tanh(v / 1e-3)))

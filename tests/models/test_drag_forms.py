@@ -15,6 +15,8 @@ from lagnet.models.residuals.body_drag import BodyDragSettings
 from lagnet.models.residuals.dissipation import DissipationSettings
 from lagnet.models.scales import fit_scales
 
+pytestmark = pytest.mark.slow
+
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 SMALL = DelanSettings(rank=3, potential_rank=3)
 FORMS = {"dissipation": DissipationSettings(rank=4), "body-drag": BodyDragSettings(2)}

@@ -25,6 +25,12 @@ FORMS = ("dissipation", "body-drag")  # of ε, beside the perceptron
 WITH_FORMS = [f"delan-ffnn {form}" for form in FORMS]
 LEARNED = [*(kind for kind in KINDS if kind != "serial-chain"), *WITH_FORMS]
 MECHANICAL = ["delan", "delan-perceptron", "delan-ffnn", *WITH_FORMS]
+QUICK = ("delan", "ffnn", "delan-ffnn")  # each kind compiles for itself; the others with the slow tests
+
+
+def each(kinds: list[str]) -> list[Any]:
+    """Parameters of all kinds, those that are not quick marked slow."""
+    return [kind if kind in QUICK else pytest.param(kind, marks=pytest.mark.slow) for kind in kinds]
 
 
 def settings_of(kind: str) -> Any:
@@ -54,7 +60,7 @@ def made(kind: str) -> LearnedModel:
     return LearnedModel(spec, drawn)
 
 
-@pytest.fixture(scope="module", params=LEARNED)
+@pytest.fixture(scope="module", params=each(LEARNED))
 def model(request: Any) -> LearnedModel:
     return made(request.param)
 
@@ -71,14 +77,14 @@ def test_the_terms_and_the_residual_add_up_to_the_torque(model, motion):
     np.testing.assert_allclose(terms, model.inverse_dynamics(q, v, a), atol=IDENTITY)
 
 
-@pytest.mark.parametrize("kind", MECHANICAL)  # an untrained network without form need not have an inverse
+@pytest.mark.parametrize("kind", each(MECHANICAL))  # an untrained network without form need not have an inverse
 def test_forward_dynamics_undo_inverse_dynamics(kind, motion):
     model, (q, v, a) = made(kind), motion
     found = model.forward_dynamics(q, v, model.inverse_dynamics(q, v, a))
     np.testing.assert_allclose(found, a, atol=1e-6)
 
 
-@pytest.mark.parametrize("kind", MECHANICAL)
+@pytest.mark.parametrize("kind", each(MECHANICAL))
 def test_mechanics_are_positive_symmetric_and_skew(kind, motion):
     model, (q, v, _) = made(kind), motion
     mass, coriolis = model.mass_matrix(q), model.coriolis_matrix(q, v)

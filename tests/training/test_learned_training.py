@@ -25,6 +25,8 @@ from lagnet.training.settings import TrainingSettings
 from lagnet.training.soap import scale_by_soap
 from lagnet.training.train import train
 
+pytestmark = pytest.mark.slow
+
 TINY = DelanSettings(rank=3, potential_rank=3)
 SHORT = TrainingSettings(steps=300, batch=64, patience=1.0, learning_rate=5e-2)
 

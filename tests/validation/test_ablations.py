@@ -20,6 +20,8 @@ from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.rules.apply import apply_rules
 from lagnet.diagnosis.rules.catalogue import RULES
 
+pytestmark = pytest.mark.slow
+
 PLACES = [(a.name, place) for a in ABLATIONS for place in a.instead]
 SLUGGISH = 0.5  # [s] after which a disturbance has forgotten itself
 
@@ -90,7 +92,6 @@ def test_without_a_noise_floor_noise_is_a_mismatch(both, plant) -> None:
     assert without.verdict.found
 
 
-@pytest.mark.slow
 def test_without_lack_of_fit_a_law_of_the_wrong_form_keeps_its_name(both, plant, at, names) -> None:
     real = plant(at(1, lambda q, v, a, t: 0.4 * v * (1.0 + np.sin(3.0 * q))))
     whole, without = both("lack_of_fit", real.record(1), real.record(51))
@@ -113,7 +114,6 @@ def test_without_unseen_blocks_the_odds_are_others(both, plant, at) -> None:
     assert first != pytest.approx(second, rel=1e-3)
 
 
-@pytest.mark.slow
 def test_without_blocks_of_time_a_sluggish_disturbance_narrows_intervals(both, plant, at) -> None:
     real = plant(at(1, lambda q, v, a, t: 0.14 * v))
     fit, held = (sluggish(real.record(s), s + 7, 0.04) for s in (0, 50))

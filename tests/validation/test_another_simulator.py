@@ -52,6 +52,7 @@ def test_every_effect_that_is_drawn_is_in_the_catalogue() -> None:
 BY_SENSOR = ("saturation", "torque_gain", "torque_offset", "encoder_offset", "time_delay")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", [e for e in SIZES if e not in BY_SENSOR])
 def test_what_is_hidden_changes_the_torque(effect, urdf, free, reference) -> None:
     usual = free.usual(reference, SECONDS)

@@ -22,7 +22,7 @@ def diagnosed(pendulum: ModuleType, nominal: Path, tmp_path: Path, plant: dict, 
 @pytest.mark.parametrize(
     ("effect", "parameter", "value", "plant", "signal"),
     [
-        ("coulomb_friction", "Fc", 0.12, {"friction": 0.12}, {}),
+        pytest.param("coulomb_friction", "Fc", 0.12, {"friction": 0.12}, {}, marks=pytest.mark.slow),
         pytest.param("gain_error", "kp", 5.0, {"kp": 5.0}, {}, marks=pytest.mark.slow),
         ("dead_band", "b", 0.05, {}, {"dead_band": 0.05}),
         pytest.param("rotor_inertia", "Ia", 0.04, {"rotor": 0.04}, {}, marks=pytest.mark.slow),
@@ -38,6 +38,7 @@ def test_a_hidden_cause_is_named_with_its_size(pendulum, nominal, tmp_path, effe
     assert errors.rmse_corrected < 0.3 * errors.rmse_nominal
 
 
+@pytest.mark.slow
 def test_nothing_is_named_where_nothing_is_hidden(pendulum, nominal, tmp_path):
     found = diagnosed(pendulum, nominal, tmp_path, {}, {})
     assert found.effects == ()

@@ -7,6 +7,8 @@ import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 MASS = 1.5  # [kg]
 NEAR = 0.05  # relative error of a mass
 CENTRES = np.array([[0.03, 0.0, 0.15], [0.03, 0.1, -0.12]])  # [m], in the frame of the last link
