@@ -69,5 +69,6 @@ def sizes_of(scales: Scales) -> dict[str, float]:
     }
     sizes |= {"bias": 0.05 * scales.error, "dead_band": 0.1 * scales.error, "delay": scales.sample}
     sizes |= {"rotor": 0.3 * scales.inertia + 1e-4 * scales.kp, "quadratic": 0.1 * torque / speed**2}
-    sizes |= {"load_driving": 0.2, "load_driven": 0.2, "load_gain": 0.2, "load_squared": 0.1 / max(torque, 1e-9)}
+    shares = ("load_driving", "load_driven", "load_motor", "load_gain")
+    sizes |= dict.fromkeys(shares, 0.2) | {"load_squared": 0.1 / max(torque, 1e-9)}
     return sizes | {"stribeck_speed": 0.2 * speed, "torque_limit": torque}

@@ -58,7 +58,7 @@ def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
 
 def _first_selection(case: JointCase) -> Selection:
     """All plain effects together, from the law of the equation error; backward elimination follows."""
-    plain = tuple(n for n in PLAIN if n in case.excited and (case.scale_is_set or n != "gain_error"))
+    plain = tuple(n for n in PLAIN if n in case.excited)
     law = case.law.copy()
     for name in (*plain, *(("gain_error",) if case.base else ())):
         law = servo_effect(name).apply(law, servo_effect(name).read(case.start))
