@@ -21,6 +21,8 @@ class SelectionLimits:
         tie: difference of two rivals in standard errors below which they are tied.
         steps: least change of the predicted motion over `JointCase.floor`, half an encoder step.
         change: least relative change of a parameter from its nominal value.
+        remainder: greatest error that names may leave, over that without them, where it is also
+        unexplained: so many times `JointCase.floor`.
     """
 
     errors: float = 3.0
@@ -28,6 +30,8 @@ class SelectionLimits:
     tie: float = 2.0
     steps: float = 1.0
     change: float = 0.05
+    remainder: float = 0.6
+    unexplained: float = 4.0
 
 
 @dataclass(frozen=True, eq=False)

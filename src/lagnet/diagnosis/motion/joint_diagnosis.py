@@ -15,7 +15,7 @@ from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.diagnosis.motion.refitting import Selection, groups_of, refit, starts_with
 from lagnet.diagnosis.motion.rest import RestBand, rest_band
 from lagnet.diagnosis.motion.rivals import Comparison, compare_rivals
-from lagnet.diagnosis.motion.selection import Rejected, select
+from lagnet.diagnosis.motion.selection import Rejected, select, unless_unexplained
 from lagnet.servos.catalogue import servo_effect
 
 IDENTIFIED = (
@@ -84,6 +84,9 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     case = replace(case, law=nominal)
     chosen, rejected = select(case)
     chosen, comparisons = compare_rivals(case, chosen)
+    kept, dropped = unless_unexplained(case, chosen)
+    if dropped:
+        chosen, comparisons, rejected = kept, (), (*rejected, *dropped)
     data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint))
     named = _refitted(case, chosen, data)
     scale = robust_scale(named.fitted.residual, case.floor)
