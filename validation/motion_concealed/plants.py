@@ -76,7 +76,8 @@ def plant(seed: int, index: int, kind: str, effect: str | None, seconds: float, 
     if effect is not None:
         parameter, low, high = (LISTED | UNLISTED)[effect]
         joint = robot.n_dof - 1 if kind != "so101" else int(rng.integers(1, 4))
-        cause = Cause(effect, joint, parameter, float(rng.uniform(low, high)))
+        digits = 3 if effect == "command_delay" else 4  # whole steps of the engine
+        cause = Cause(effect, joint, parameter, round(float(rng.uniform(low, high)), digits))
     recordings = tuple(_record(robot, cause, seconds, int(rng.integers(1 << 30)), i) for i in range(3))
     given = {joint: SERVO for joint in robot.joints}
     return Plant(

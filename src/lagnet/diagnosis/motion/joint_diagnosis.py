@@ -91,7 +91,7 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     named = _refitted(case, chosen, data)
     scale = robust_scale(named.fitted.residual, case.floor)
     coordinates = free_coordinates(groups_of(case, named.effects), named.law, sizes_of(case.scales))
-    intervals = law_intervals(data, named.law, coordinates, scale)
+    intervals = law_intervals(data, named.law, coordinates, scale, case.floor)
     rest = rest_band(problem.series[joint], 2.0 * case.floor)
     long = with_long_windows(case, problem, fitted, joint)
     data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint, LONG))
