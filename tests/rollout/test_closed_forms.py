@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from lagnet.rollout.one_joint import JointSeries, Windows, roll_out
 from lagnet.servos.command_delay import command_integral
@@ -55,6 +56,14 @@ def test_a_joint_below_break_away_never_creeps():
 def test_a_self_locking_gear_holds_its_load_when_the_drive_is_off():
     assert np.ptp(rolled(np.zeros_like(TIME), load=1.0, kp=1e-6, load_driven=1.1)) == 0.0
     assert rolled(np.zeros_like(TIME), load=1.0, kp=1e-6, load_driven=0.9)[-1] < -0.1
+
+
+@pytest.mark.parametrize(("torque", "moves"), [(1.45, False), (1.55, True)])
+def test_a_gear_lifts_its_load_from_a_torque_of_load_times_one_plus_k_over_one_minus_k(torque, moves):
+    gear = {"load_driving": 0.2, "load_driven": 0.2, "load_motor": 0.2}  # 1.2 / 0.8 = 1.5
+    q = rolled(np.full_like(TIME, 100.0), load=1.0, kp=50.0, torque_limit=torque, **gear)
+    assert bool(q[-1] > 0.0) == moves
+    assert moves or np.ptp(q) == 0.0
 
 
 def test_a_delay_of_parts_of_a_sample_shifts_the_motion_by_as_much():

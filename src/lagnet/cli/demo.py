@@ -13,10 +13,13 @@ ROBOT = "ur5"
 def command(
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("lagnet-demo"),
     seed: Annotated[int, typer.Option(help="Which effects are hidden, and all noise.")] = 4,
+    route: Annotated[str, typer.Option(help="torque, or motion: recordings of commands and positions.")] = "torque",
 ) -> None:
     """Hide an effect in a simulated arm, diagnose it, open the envelope and compare."""
     from lagnet.cli.console import say
     from lagnet.cli.envelope import compare, seal
+    from lagnet.cli.motion import check_route
+    from lagnet.cli.motion_demo import demonstrate_on_motion
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.writing import write_diagnosis
     from lagnet.models.files.loading import load_any
@@ -26,6 +29,10 @@ def command(
     from lagnet.simulation.simulate import SimulationSettings, trajectories, truth
     from lagnet.simulation.surprise import draw_surprise
 
+    check_route(route)
+    if route == "motion":
+        demonstrate_on_motion(out, seed)
+        return
     robot = load_any(ROBOT)
     hidden, settings = draw_surprise(robot, seed), SimulationSettings(trajectories=4, seed=seed)
     recordings = out / "recordings"

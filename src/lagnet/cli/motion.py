@@ -12,14 +12,24 @@ from lagnet.recordings.recording import Recording
 ROUTES = ("torque", "motion")
 
 
+def check_route(asked: str) -> None:
+    """Holds a route against those that there are.
+
+    Raises:
+        LagnetError: no such route.
+    """
+    if asked not in ROUTES:
+        raise LagnetError(f"unknown route {asked!r}", choices=ROUTES)
+
+
 def route_of(asked: str | None, recordings: Sequence[Recording]) -> str:
     """The route that was asked for; else motion where no recording holds torque or current, but all hold commands.
 
     Raises:
         LagnetError: no such route, or motion without commands.
     """
-    if asked is not None and asked not in ROUTES:
-        raise LagnetError(f"unknown route {asked!r}", choices=ROUTES)
+    if asked is not None:
+        check_route(asked)
     commanded = all(r.command is not None for r in recordings)
     if asked == "motion" and not commanded:
         raise LagnetError("--route motion needs command_i in every recording", next_step="use --route torque")

@@ -154,7 +154,7 @@ def next_speed(p, v, m, torque, stiff, damp, brake, load, h):  # pragma: no cove
     drive = torque + (damp - early * damping) * v - 0.25 * h * stiff * v - load
     free = m * v + h * drive
     side = 1.0 if free > 0.0 else -1.0
-    dry = h * dry_friction(p, v, load, side)
+    dry = h * dry_friction(p, v, load, torque - p[OFFSET] - brake * v, side)
     if abs(free) <= dry:
         return 0.0
     return (free - side * dry) / (m + h * (1.0 - early) * damping + 0.25 * h * h * stiff)

@@ -87,6 +87,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
     dof, last = q.size, time.size - 1
     mass, bias, a = np.empty((dof, dof)), np.empty(dof), np.empty((dof, dof))
     free, load, total, before = np.empty(dof), np.empty(dof), np.zeros(dof), np.empty(dof)
+    motor = np.empty(dof)
     cursor = np.zeros(dof, dtype=np.int64)
     out[0] = q
     for n in range(last):
@@ -105,17 +106,18 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 u = (after - before[j]) / h
                 before[j] = after
                 load[j] = p[LOAD_GAIN] * bias[j]
-                torque, stiff, damp = 0.0, 0.0, 0.0
+                torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
                 viscous = p[VISCOUS] + p[QUADRATIC] * abs(v[j])
                 if enabled[n, j] > 0.5:
                     error = u - q[j] - p[BIAS]
                     total[j] += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
                     r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n, j] - 1.0)
                     torque, stiff, damp = controller_torque(p, error, total[j], v[j], r, gain[n, j])
-                    viscous += p[BACK_EMF]
+                    brake = p[BACK_EMF]
                 else:
                     total[j] = 0.0
-                damping = viscous + damp
+                motor[j] = torque - brake * v[j]
+                damping = viscous + brake + damp
                 own = p[LOAD_GAIN] * mass[j, j] + p[ROTOR]
                 early = explicit_share(damping, own, h)
                 drive = torque + (damp - early * damping) * v[j] + p[OFFSET] - 0.25 * h * stiff * v[j] - load[j]
@@ -126,7 +128,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 a[j, j] += p[ROTOR] + h * (1.0 - early) * damping + 0.25 * h * h * stiff
             for j in range(dof):  # q moves half a step by the old speed, half by the new
                 q[j] += 0.5 * h * v[j]
-            _settle(parameters, a, free, load, h, v)
+            _settle(parameters, a, free, load, motor, h, v)
             for j in range(dof):
                 q[j] += 0.5 * h * v[j]
                 if not abs(q[j]) < FARTHEST:
@@ -146,7 +148,7 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
 
 
 @njit(cache=True, error_model="numpy")
-def _settle(parameters, a, free, load, h, v):  # pragma: no cover - compiled
+def _settle(parameters, a, free, load, motor, h, v):  # pragma: no cover - compiled
     """Speeds at the end of a step with the dry frictions that go with them, written into v."""
     old = v.copy()
     for _ in range(SWEEPS):
@@ -157,7 +159,7 @@ def _settle(parameters, a, free, load, h, v):  # pragma: no cover - compiled
                 if m != j:
                     rest -= a[j, m] * v[m]
             side = 1.0 if rest > 0.0 else -1.0
-            dry = h * dry_friction(parameters[j], old[j], load[j], side)
+            dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
             new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]
             moved = max(moved, abs(new - v[j]))
             v[j] = new

@@ -10,6 +10,7 @@ from lagnet.servos.effects.dead_band import DeadBand
 from lagnet.servos.effects.directional_load_friction import DirectionalLoadFriction
 from lagnet.servos.effects.duty_saturation import DutySaturation
 from lagnet.servos.effects.gain_error import GainError
+from lagnet.servos.effects.gear_friction import GearFriction
 from lagnet.servos.effects.load_dependent_friction import LoadDependentFriction
 from lagnet.servos.effects.load_error import LoadError
 from lagnet.servos.effects.position_bias import PositionBias
@@ -31,6 +32,7 @@ _EFFECTS: tuple[ServoEffect, ...] = (
     LoadDependentFriction(),
     DirectionalLoadFriction(),
     QuadraticLoadFriction(),
+    GearFriction(),
     StaticFriction(),
     StribeckFriction(),
     QuadraticDrag(),

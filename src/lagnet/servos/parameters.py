@@ -3,7 +3,8 @@
 e   = dead_band(u(t − T) − q − δ; b)                     command error behind delay, bias and dead band
 τ_m = clip(r (kp e + ki ∫e dt − kd v), ±r τ_max) − kb v  controller; r = voltage over nominal voltage, 1 if unknown
 (M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − friction     joint; load holds gravity and the other joints
-friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K₂ load²] sign(v) + Fv v + Fd v |v|;  at rest the bracket bounds it
+friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K_m |τ_m| + K₂ load²] sign(v) + Fv v + Fd v |v|;
+at rest the bracket bounds it
 """
 
 from __future__ import annotations
@@ -52,14 +53,26 @@ LAW = (
     LawParameter("stiffness", "N m/rad", "stiffness between motor and link; 0: rigid", 0.0, 0.0, 1e6),
     LawParameter("back_emf", "N m s/rad", "damping by the motor's own voltage while enabled", 0.0, 0.0, 1e5),
     LawParameter("gap", "rad", "half-width of the play between motor and link", 0.0, 0.0, 0.5),
+    LawParameter("load_motor", "", "friction per torque of the motor", 0.0, 0.0, 0.9),
 )
 NAMES = tuple(p.name for p in LAW)
 INDEX = {name: i for i, name in enumerate(NAMES)}
 NEUTRAL = np.array([p.neutral for p in LAW])
 (KP, KD, KI, BIAS, DELAY, DEAD_BAND, LIMIT, VOLTAGE_SHARE, ROTOR, VISCOUS, QUADRATIC) = range(11)
-(COULOMB, STATIC, STRIBECK_SPEED, DRIVING, DRIVEN, LOAD_SQUARED, OFFSET, LOAD_GAIN, STIFFNESS, BACK_EMF, GAP) = range(
-    11, 22
-)
+(
+    COULOMB,
+    STATIC,
+    STRIBECK_SPEED,
+    DRIVING,
+    DRIVEN,
+    LOAD_SQUARED,
+    OFFSET,
+    LOAD_GAIN,
+    STIFFNESS,
+    BACK_EMF,
+    GAP,
+    LOAD_MOTOR,
+) = range(11, 23)
 
 
 def law_vector(**values: float) -> np.ndarray:

@@ -18,6 +18,7 @@ from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
 
 LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
 EVERY = 4  # one window in so many of the fitted recordings is for validation
+LONG = 10.0  # [s] of a rollout to which the complete law is fitted
 SAMPLES = 15000  # that a search uses; the last fit uses all
 ESTIMATED: tuple[tuple[str, ...], ...] = (("kp",), ("viscous",))  # free from the start where no servo is given
 
@@ -68,18 +69,27 @@ def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
     return inside
 
 
-def _divided(problem: MotionProblem, fitted: int, joint: int) -> tuple[Windows, Windows]:
+def _divided(problem: MotionProblem, fitted: int, joint: int, length: float | None = None) -> tuple[Windows, Windows]:
     """Windows to fit, and windows for validation: all that is held out, and every fourth of the others."""
-    windows, inside = problem.windows(joint), _inside(problem, fitted)
+    windows, inside = problem.windows(joint, length), _inside(problem, fitted)
     of_fit = np.flatnonzero(inside[windows.first])
     validation = ~inside[windows.first]
     validation[of_fit[2::EVERY]] = True
     return _pick(windows, np.flatnonzero(~validation)), _pick(windows, np.flatnonzero(validation))
 
 
-def windows_to_fit(problem: MotionProblem, fitted: int, joint: int) -> Windows:
+def with_long_windows(case: JointCase, problem: MotionProblem, fitted: int, joint: int) -> JointCase:
+    """The case with windows of `LONG` seconds, in which errors of rest positions have time to add up."""
+    series, step = case.fit.series, case.fit.step
+    fit, validation = (
+        JointData(series, _thinned(w, series, SAMPLES), step) for w in _divided(problem, fitted, joint, LONG)
+    )
+    return replace(case, fit=fit, validation=validation)
+
+
+def windows_to_fit(problem: MotionProblem, fitted: int, joint: int, length: float | None = None) -> Windows:
     """All windows of the recordings that may be fitted."""
-    windows = problem.windows(joint)
+    windows = problem.windows(joint, length)
     return _pick(windows, np.flatnonzero(_inside(problem, fitted)[windows.first]))
 
 
@@ -105,7 +115,7 @@ def _first(fit: MotionProblem, joint: int, moving: np.ndarray, servo: NominalSer
     found = first_law(fit.series[joint], fit.speed[:, joint], acceleration, moving, reference)
     nominal = servo.laws[joint]
     damping = float(nominal[VISCOUS] + nominal[KD])
-    if found.scale_is_set or not servo.known[joint]:
+    if found.scale_is_likely or not servo.known[joint]:
         return found
     kp = float(nominal[KP])
     if damping > 0.0 and found.law[VISCOUS] > 0.0:
@@ -135,11 +145,14 @@ def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
 
 def _scales(series: JointSeries, speed: np.ndarray, moving: np.ndarray, law: np.ndarray, start: FirstLaw) -> Scales:
     error = float(np.sqrt(np.mean((series.command - series.q) ** 2))) + 1e-9
+    driving = series.enabled > 0.5
+    asked = (series.gain * (series.command - series.q))[driving]  # γ e, which kp makes a torque
+    rms_asked = float(np.sqrt(np.mean(asked**2))) + 1e-9 if driving.any() else error
     rms_speed = float(np.sqrt(np.mean(speed[moving] ** 2))) if moving.any() else 1.0
     kp = float(start.law[KP])
     inertia = float(series.mass.mean() + law[INDEX["rotor"]])
     sample = float(np.median(np.diff(series.time)))
-    return Scales(kp * error, max(rms_speed, 1e-6), error, max(inertia, 1e-9), sample, kp)
+    return Scales(kp * rms_asked, max(rms_speed, 1e-6), error, max(inertia, 1e-9), sample, kp)
 
 
 def _thinned(windows: Windows, series: JointSeries, most: int) -> Windows:

@@ -208,6 +208,7 @@ def _rejected(joints: Sequence[str], found: Sequence[JointDiagnosis | None]) -> 
                 "no_holdout_gain": "errors on motion that was not fitted hardly shrink with it",
                 "not_significant": "the gain on motion that was not fitted is within its scatter",
                 "below_resolution": "it changes the predicted motion by less than half a step of the encoder [rad]",
+                "remainder": "with all that was selected most of the error remains: its cause is another [rad]",
                 "near_nominal": "its parameters are those of the nominal servo but for a few percent",
             }[r.rule]
             entry = {"effect": r.effect, "joint": joint, "rule": r.rule, "value": r.value, "limit": r.limit}

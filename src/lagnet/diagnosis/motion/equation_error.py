@@ -1,6 +1,8 @@
 """Equation error: the command error of smoothed motion as a linear sum of load, v, sign v and a.
 
-    u(t − T) − q = δ + (load + M_ii a)/kp + [f + κ |load|] sign(v) + t_v v + m a        while the joint moves
+    γ (u(t − T) − q − δ) = (load + M_ii a)/kp + [f + κ |load|] sign(v) + t_v v + m a        while the joint moves
+
+with the gains γ of a recording over those of the law.
 
 Non-negative least squares for each of a few delays T. It starts the fit of rollouts and is no estimate: smoothing and
 quantisation bias it. Source: Gautier & Janot 2013 (equation error and output error).
@@ -24,10 +26,17 @@ DETERMINED = 4.0  # least 1/kp over its standard error, which is over blocks
 
 @dataclass(frozen=True, eq=False)
 class FirstLaw:
-    """A law, and whether the loads determine its scale in N m; where they do not, kp is `reference`."""
+    """A law of which the loads determine the scale in N m, or not.
+
+    Args:
+        law: shape (len(LAW),).
+        scale_is_set: whether kp is determined.
+        scale_is_likely: whether the loads explain a share of the error, determined or not; else kp is `reference`.
+    """
 
     law: np.ndarray
     scale_is_set: bool
+    scale_is_likely: bool
 
 
 def first_law(
@@ -43,28 +52,29 @@ def first_law(
     """
     rows = np.flatnonzero(moving & (series.enabled > 0.5))
     if rows.size < 20:
-        return FirstLaw(law_vector(kp=reference), False)
+        return FirstLaw(law_vector(kp=reference), False, False)
     rows = rows[:: max(1, rows.size // MOST)]
     clock = _unbroken(series.time)
     load, direction, v, a = series.load[rows], np.sign(speed[rows]), speed[rows], acceleration[rows]
     columns = np.column_stack(
-        [load + series.mass[rows] * a, direction, direction * np.abs(load), v, a, np.ones_like(v)]
+        [load + series.mass[rows] * a, direction, direction * np.abs(load), v, a, series.gain[rows]]
     )  # 1/kp, f, κ, t_v, m, δ
     best = None
     for delay in DELAYS:
-        error = np.interp(clock[rows] - delay, clock, series.command) - series.q[rows]
+        error = series.gain[rows] * (np.interp(clock[rows] - delay, clock, series.command) - series.q[rows])
         x, cost = _bounded(columns, error)
         if best is None or cost < best[0]:
             best = (cost, delay, x, error)
     assert best is not None
     _, delay, x, error = best
     set_by_load = _is_determined(columns, error, x)
-    kp = 1.0 / x[0] if set_by_load else reference
+    likely = x[0] > 0.0 and _share_of_load(columns, error, x) > SHARE
+    kp = 1.0 / x[0] if likely else reference
     law = law_vector(
         kp=kp, coulomb=x[1] * kp, load_driving=x[2] * kp, load_driven=x[2] * kp, viscous=x[3] * kp, rotor=x[4] * kp
     )
     law_delayed = law_vector(delay=float(delay), bias=float(x[5]))
-    return FirstLaw(np.where(law_delayed != law_vector(), law_delayed, law), set_by_load)
+    return FirstLaw(np.where(law_delayed != law_vector(), law_delayed, law), set_by_load, likely)
 
 
 def _unbroken(time: np.ndarray) -> np.ndarray:
@@ -82,11 +92,17 @@ def _bounded(columns: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, float]
     return found.x / sizes, float(found.cost)
 
 
+def _share_of_load(columns: np.ndarray, error: np.ndarray, x: np.ndarray) -> float:
+    """Share of the squared error that is left without the load and explained with it."""
+    rest, without = error - columns @ x, _bounded(np.delete(columns, 0, 1), error)[1]
+    return 1.0 - 0.5 * float(rest @ rest) / max(without, 1e-300)
+
+
 def _is_determined(columns: np.ndarray, error: np.ndarray, x: np.ndarray, n_blocks: int = 20) -> bool:
     """Whether the load explains a share of the error, and alike in the blocks of the motion."""
-    rest = error - columns @ x
-    if x[0] <= 0.0 or _bounded(np.delete(columns, 0, 1), error)[1] * (1.0 - SHARE) < 0.5 * float(rest @ rest):
+    if x[0] <= 0.0 or _share_of_load(columns, error, x) < SHARE:
         return False
+    rest = error - columns @ x
     sizes = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
     scaled = columns / sizes
     normal = scaled.T @ scaled + 1e-9 * len(rest) * np.eye(len(x))

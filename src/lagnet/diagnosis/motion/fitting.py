@@ -17,6 +17,7 @@ from lagnet.servos.parameters import INDEX, LAW
 
 HUBER = 2.0  # robust scales beyond which a residual counts linearly
 DIFFERENCE = 2e-3  # step of a finite difference, in sizes of each parameter
+COARSER = (5.0, 25.0)  # steps tried in a patient fit where the first finds no descent: sticking makes the cost rough
 DAMPING = (1e-3, 1e-1, 1e1, 1e3)  # Levenberg–Marquardt factors, of which each iteration takes the best
 PRIOR = 1e-4  # weight of |x − x₀|², per coordinate, so that an undetermined coordinate stays at the start
 
@@ -97,13 +98,15 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     return np.where(size < HUBER, 0.5 * size**2, HUBER * size - 0.5 * HUBER**2)
 
 
-def sensitivities(data: JointData, coordinates: Coordinates, law: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def sensitivities(
+    data: JointData, coordinates: Coordinates, law: np.ndarray, difference: float = DIFFERENCE
+) -> tuple[np.ndarray, np.ndarray]:
     """q̂, shape (n,), and ∂q̂/∂x by the coordinates in units of their sizes, shape (n, k)."""
     values = coordinates.read(law)
-    signs = np.where(values + DIFFERENCE * coordinates.sizes > coordinates.upper, -1.0, 1.0)
-    moved = values + np.diag(signs * DIFFERENCE * coordinates.sizes)
+    signs = np.where(values + difference * coordinates.sizes > coordinates.upper, -1.0, 1.0)
+    moved = values + np.diag(signs * difference * coordinates.sizes)
     found = data.predict(np.vstack([coordinates.write(law, values), coordinates.write(law, moved)]))
-    return found[0], ((found[1:] - found[0]) / (signs[:, None] * DIFFERENCE)).T
+    return found[0], ((found[1:] - found[0]) / (signs[:, None] * difference)).T
 
 
 def fit_law(
@@ -114,6 +117,7 @@ def fit_law(
     scale: float,
     iterations: int = 12,
     tolerance: float = 1e-3,
+    patient: bool = False,
 ) -> Fitted:
     """argmin of the mean Huber loss of a joint's rollouts, from a start.
 
@@ -124,23 +128,27 @@ def fit_law(
         scale: robust scale of the residual [rad], held fixed.
         iterations: at most.
         tolerance: relative gain of the cost at which it has converged.
+        patient: try coarser differences where the cost does not fall.
     """
     law = coordinates.write(law, coordinates.read(law))[0]
     start = coordinates.read(law) / coordinates.sizes
     jacobian = np.zeros((len(data.series.q), 0))
     residual = data.errors(law)
     cost = float(np.mean(huber(residual, scale)))
+    differences = [DIFFERENCE, *(DIFFERENCE * c for c in COARSER if patient)]
     for _ in range(iterations if coordinates.groups else 0):
-        predicted, jacobian = sensitivities(data, coordinates, law)
+        predicted, jacobian = sensitivities(data, coordinates, law, differences[0])
         values = coordinates.read(law) / coordinates.sizes
         steps = _steps(jacobian, predicted - data.series.q, scale, values - start, coordinates, values)
         laws = coordinates.write(law, (values + steps) * coordinates.sizes)
         costs = np.array([np.mean(huber(r, scale)) for r in data.predict(laws) - data.series.q])
         best = int(np.nanargmin(costs))
-        if not costs[best] < cost:
-            break
-        gain, cost, law = cost - costs[best], float(costs[best]), laws[best]
-        if gain < tolerance * cost:
+        gain = cost - float(costs[best])
+        if gain > 0.0:
+            cost, law = float(costs[best]), laws[best]
+        if not gain > tolerance * cost:
+            differences = differences[1:]
+        if not differences:
             break
     return Fitted(law, cost, data.errors(law), jacobian, scale)
 

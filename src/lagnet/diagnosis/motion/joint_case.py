@@ -21,6 +21,8 @@ class SelectionLimits:
         tie: difference of two rivals in standard errors below which they are tied.
         steps: least change of the predicted motion over `JointCase.floor`, half an encoder step.
         change: least relative change of a parameter from its nominal value.
+        remainder: greatest error that names may leave, over that without them, where it is also
+        unexplained: so many times `JointCase.floor`.
     """
 
     errors: float = 3.0
@@ -28,6 +30,8 @@ class SelectionLimits:
     tie: float = 2.0
     steps: float = 1.0
     change: float = 0.05
+    remainder: float = 0.6
+    unexplained: float = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,5 +73,6 @@ def sizes_of(scales: Scales) -> dict[str, float]:
     }
     sizes |= {"bias": 0.05 * scales.error, "dead_band": 0.1 * scales.error, "delay": scales.sample}
     sizes |= {"rotor": 0.3 * scales.inertia + 1e-4 * scales.kp, "quadratic": 0.1 * torque / speed**2}
-    sizes |= {"load_driving": 0.2, "load_driven": 0.2, "load_gain": 0.2, "load_squared": 0.1 / max(torque, 1e-9)}
+    shares = ("load_driving", "load_driven", "load_motor", "load_gain")
+    sizes |= dict.fromkeys(shares, 0.2) | {"load_squared": 0.1 / max(torque, 1e-9)}
     return sizes | {"stribeck_speed": 0.2 * speed, "torque_limit": torque}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.motion.block_scores import advantage
-from lagnet.diagnosis.motion.cases import windows_to_fit
+from lagnet.diagnosis.motion.cases import LONG, windows_to_fit, with_long_windows
 from lagnet.diagnosis.motion.fitting import JointData, fit_law, free_coordinates, robust_scale
 from lagnet.diagnosis.motion.intervals import law_intervals
 from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
@@ -15,7 +15,7 @@ from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.diagnosis.motion.refitting import Selection, groups_of, refit, starts_with
 from lagnet.diagnosis.motion.rest import RestBand, rest_band
 from lagnet.diagnosis.motion.rivals import Comparison, compare_rivals
-from lagnet.diagnosis.motion.selection import Rejected, select
+from lagnet.diagnosis.motion.selection import Rejected, select, unless_unexplained
 from lagnet.servos.catalogue import servo_effect
 
 IDENTIFIED = (
@@ -29,7 +29,14 @@ IDENTIFIED = (
     "quadratic_drag",
     "stribeck_friction",
 )  # effects of the complete law, named or not
-FURTHER = ("duty_saturation", "directional_load_friction", "quadratic_load_friction", "static_friction", "dead_band")
+FURTHER = (
+    "duty_saturation",
+    "gear_friction",
+    "directional_load_friction",
+    "quadratic_load_friction",
+    "static_friction",
+    "dead_band",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +84,18 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     case = replace(case, law=nominal)
     chosen, rejected = select(case)
     chosen, comparisons = compare_rivals(case, chosen)
+    kept, dropped = unless_unexplained(case, chosen)
+    if dropped:
+        chosen, comparisons, rejected = kept, (), (*rejected, *dropped)
     data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint))
     named = _refitted(case, chosen, data)
     scale = robust_scale(named.fitted.residual, case.floor)
     coordinates = free_coordinates(groups_of(case, named.effects), named.law, sizes_of(case.scales))
-    intervals = law_intervals(data, named.law, coordinates, scale)
+    intervals = law_intervals(data, named.law, coordinates, scale, case.floor)
     rest = rest_band(problem.series[joint], 2.0 * case.floor)
-    law = _complete(case, chosen, named, data)
+    long = with_long_windows(case, problem, fitted, joint)
+    data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint, LONG))
+    law = _complete(long, chosen, named, data)
     return JointDiagnosis(case, nominal, named, comparisons, rejected, intervals, law, rest)
 
 
@@ -91,7 +103,8 @@ def _refitted(case: JointCase, chosen: Selection, data: JointData) -> Selection:
     """The chosen effects fitted to every window of the fitted recordings."""
     scale = robust_scale(data.errors(chosen.law), case.floor)
     coordinates = free_coordinates(groups_of(case, chosen.effects), chosen.law, sizes_of(case.scales))
-    return replace(chosen, fitted=fit_law(data, chosen.law, coordinates, scale=scale))
+    fitted = fit_law(data, chosen.law, coordinates, scale=scale, iterations=40, patient=True)
+    return replace(chosen, fitted=fitted)
 
 
 def _complete(case: JointCase, chosen: Selection, named: Selection, data: JointData) -> np.ndarray:
@@ -102,6 +115,7 @@ def _complete(case: JointCase, chosen: Selection, named: Selection, data: JointD
     if "stribeck_friction" in more:
         more = [e for e in more if e != "coulomb_friction"]
     scale = robust_scale(chosen.fitted.residual, case.floor)
+    chosen = refit(case, chosen.effects, chosen.law, scale)
     best = _best_of(case, chosen.law, (*chosen.effects, *more), scale)
     for extra in FURTHER:
         if extra in case.excited and extra not in best.effects:

@@ -63,9 +63,9 @@ class MotionProblem:
         time = self.series[0].time
         return float(sum(time[run.last] - time[run.first] for run in self.runs))
 
-    def windows(self, joint: int) -> Windows:
-        """Windows of rollouts from a joint's measured position and speed, shorter for short recordings."""
-        length = float(np.clip(self.duration / WINDOWS, *WINDOW))
+    def windows(self, joint: int, length: float | None = None) -> Windows:
+        """Windows of `length` seconds from a joint's measured position and speed; None: shorter for short ones."""
+        length = length or float(np.clip(self.duration / WINDOWS, *WINDOW))
         time, rows = self.series[joint].time, []
         for run in self.runs:
             count = max(1, round((time[run.last] - time[run.first]) / length))

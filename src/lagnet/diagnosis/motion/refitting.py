@@ -11,7 +11,7 @@ from lagnet.diagnosis.motion.block_scores import block_scores
 from lagnet.diagnosis.motion.fitting import Fitted, fit_law, free_coordinates
 from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
 from lagnet.servos.catalogue import servo_effect
-from lagnet.servos.parameters import NAMES
+from lagnet.servos.parameters import KP, NAMES
 
 FULL = 12  # iterations
 
@@ -68,8 +68,8 @@ def refit(case: JointCase, effects: Sequence[str], law: np.ndarray, scale: float
 def starts_with(case: JointCase, selected: Selection, name: str) -> list[np.ndarray]:
     """Laws from which a fit with one more effect starts, each of shape (len(LAW),)."""
     effect = servo_effect(name)
-    out = []
-    for start in effect.starts(replace(case.scales, kp=float(selected.law[0]))):
+    kp, out = float(selected.law[KP]), []
+    for start in effect.starts(replace(case.scales, kp=kp, torque=case.scales.torque * kp / case.scales.kp)):
         out.append(effect.apply(selected.law, dict(zip([p.name for p in effect.parameters], start, strict=True))))
     return out
 

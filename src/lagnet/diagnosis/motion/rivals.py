@@ -1,7 +1,7 @@
 """Each named effect against its rivals: replaced by one, all parameters refitted, compared on the same held-out blocks.
 
-A rival that predicts as well is tied, one that predicts better replaces the effect. A rival that contains the effect,
-or has more parameters, predicts as well by construction and is no tie.
+A rival that predicts as well is tied; one that predicts better, or as well with fewer effects, replaces the effect. A
+rival that contains the effect, or has more parameters, predicts as well by construction and is no tie.
 """
 
 from __future__ import annotations
@@ -67,8 +67,24 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
         elif lead_errors < case.limits.tie or lead < 0.1 * max(gain, 0.0):
             tied.append(rival)
+            simpler = _simpler(case, found, scale)
+            if len(simpler.effects) < len(selected.effects) and _as_good(case, simpler, selected):
+                better = simpler if better is None or simpler.blocks.mean() < better.blocks.mean() else better
     odds = None if best is None else max(-99.0, min(99.0, 0.5 * best[2] * abs(best[2]) / 2.302585))
     return Comparison(effect, gain, errors, tuple(tied), None if best is None else best[0], odds), better
+
+
+def _simpler(case: JointCase, selected: Selection, scale: float) -> Selection:
+    """The selection without the effects that it predicts as well without."""
+    for effect in selected.effects:
+        fewer = without(case, selected, effect, scale)
+        if _as_good(case, fewer, selected):
+            return _simpler(case, fewer, scale)
+    return selected
+
+
+def _as_good(case: JointCase, one: Selection, other: Selection) -> bool:
+    return advantage(one.blocks, other.blocks)[0] < case.limits.gain
 
 
 def _rivals(case: JointCase, selected: Selection, effect: str) -> list[str]:

@@ -56,9 +56,21 @@ def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     return _backward(case, selected, last)
 
 
+def unless_unexplained(case: JointCase, chosen: Selection) -> tuple[Selection, tuple[Rejected, ...]]:
+    """The selection, or none where it leaves most of the error of a given servo: then the cause is another."""
+    if case.base or not chosen.effects:
+        return chosen, ()
+    before, after = (float(np.sqrt(np.mean(case.validation.errors(law) ** 2))) for law in (case.law, chosen.law))
+    limit = max(case.limits.remainder * before, case.limits.unexplained * case.floor)
+    if after <= limit:
+        return chosen, ()
+    scale = robust_scale(case.fit.errors(case.law), case.floor)
+    return refit(case, (), case.law, scale), tuple(Rejected(e, "remainder", after, limit) for e in chosen.effects)
+
+
 def _first_selection(case: JointCase) -> Selection:
     """All plain effects together, from the law of the equation error; backward elimination follows."""
-    plain = tuple(n for n in PLAIN if n in case.excited and (case.scale_is_set or n != "gain_error"))
+    plain = tuple(n for n in PLAIN if n in case.excited)
     law = case.law.copy()
     for name in (*plain, *(("gain_error",) if case.base else ())):
         law = servo_effect(name).apply(law, servo_effect(name).read(case.start))

@@ -111,6 +111,8 @@ class ServoDrivenModel:
         pace = np.maximum(laws[:, INDEX["stribeck_speed"]], 1e-9)
         dry = laws[:, COULOMB] + laws[:, INDEX["static"]] * np.exp(-((v / pace) ** 2))
         dry = dry + per_load * np.abs(load) + laws[:, INDEX["load_squared"]] * load**2
+        per_motor = laws[:, INDEX["load_motor"]]  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
+        dry = (dry + per_motor * np.abs(load)) / (1.0 - per_motor * np.sign(side * load))
         return dry * side + (laws[:, VISCOUS] + laws[:, QUADRATIC] * np.abs(v)) * v - laws[:, OFFSET]
 
     def _of_bodies(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
@@ -174,7 +176,7 @@ def load_servo_driven(folder: str | Path, load_robot: Any) -> ServoDrivenModel:
         text = json.loads(where.read_text(encoding="utf-8"))
         if int(text.get("format", 0)) > FORMAT:
             raise ModelError(f"format {text['format']} is newer than {FORMAT}", where=str(where))
-        laws = np.array([[float(law[name]) for name in NAMES] for law in text["laws"]])
+        laws = np.array([[float(law.get(p.name, p.neutral)) for p in LAW] for law in text["laws"]])
         scales, voltage = tuple(bool(x) for x in text["scale_is_set"]), float(text["voltage"])
         robot = load_robot(Path(folder) / Path(str(text["robot"])).name)
         fits = laws.shape == (robot.n_dof, len(NAMES)) and len(scales) == robot.n_dof and np.isfinite(laws).all()

@@ -24,4 +24,4 @@ class DutySaturation(ServoEffect):
     source = "duclusaud2025"
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
-        return ((1.5 * scales.torque,), (4.0 * scales.torque,))
+        return tuple((share * scales.torque,) for share in (1.0, 1.5, 2.5))

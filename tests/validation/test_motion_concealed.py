@@ -1,0 +1,63 @@
+"""Plants of the concealed study on motion are the arms that the diagnosis is given, but for what is hidden."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from validation.motion_concealed.plants import ENCODER, LISTED, SERVO, UNLISTED, Cause, Plant, plant
+from validation.motion_concealed.study import figures, judge, scored
+
+from lagnet.models.corrected.servo_driven import ServoDrivenModel
+
+SECONDS = 20.0
+
+
+def claim(effect: str, joint: str = "lower", tied: tuple[str, ...] = (), **values: float) -> SimpleNamespace:
+    parameters = [SimpleNamespace(name=n, value=x, ci95=(0.9 * x, 1.1 * x)) for n, x in values.items()]
+    return SimpleNamespace(effect=effect, joint=joint, tied_with=tied, parameters=parameters)
+
+
+def told(cause: Cause | None, *claims: SimpleNamespace) -> dict:
+    case = Plant("one", SimpleNamespace(joints=("lower",)), None, (), cause)  # type: ignore[arg-type]
+    return scored(case, SimpleNamespace(effects=claims))  # type: ignore[arg-type]
+
+
+def test_a_leg_that_hides_nothing_moves_as_its_nominal_model(tmp_path):
+    case = plant(3, 1, "leg", None, SECONDS, tmp_path)
+    model = ServoDrivenModel(case.robot, case.servo.laws, (True, True))
+    recording = case.recordings[0]
+    q = model.rollout(np.array(recording.command), recording.time, recording.q[0], step=0.001)
+    assert np.sqrt(np.mean((q - recording.q) ** 2)) < 3.0 * ENCODER  # two integrators and nearly rigid friction
+
+
+@pytest.mark.parametrize("effect", [*LISTED, *UNLISTED])
+def test_every_cause_moves_the_plant_otherwise(effect, tmp_path):
+    free, real = (plant(3, 2, "pendulum", e, SECONDS, tmp_path) for e in (None, effect))
+    nominal = ServoDrivenModel(free.robot, free.servo.laws, (True,))
+    errors = []
+    for recording in (free.recordings[0], real.recordings[0]):
+        q = nominal.rollout(np.array(recording.command), recording.time, recording.q[0], step=0.001)
+        errors.append(np.sqrt(np.mean((q - recording.q) ** 2)))
+    assert errors[1] > 1.5 * errors[0]
+
+
+def test_a_cause_is_found_by_its_name_or_by_few_ties_at_its_joint():
+    cause = Cause("dead_band", 0, "b", 0.03)
+    right = told(cause, claim("dead_band", b=0.033))
+    assert right["found"]
+    assert right["wrong"] == []
+    assert right["error"] == pytest.approx(0.1)
+    assert right["covered"]
+    assert told(cause, claim("static_friction", tied=("dead_band",)))["found"]
+    assert not told(cause, claim("a", tied=("b", "c", "dead_band")))["found"]
+    assert told(cause, claim("dead_band", joint="upper", b=0.03))["wrong"] == ["dead_band at upper"]
+
+
+def test_a_claim_where_nothing_listed_is_hidden_is_wrong():
+    rows = [told(None, claim("dead_band", b=SERVO["kp"])), told(Cause("joint_spring", 0, "k", 1.0))]
+    found = figures(rows)
+    assert found["claims_where_nothing_is_hidden"] == found["wrong_claims"] == 1
+    assert found["claims_of_unlisted_physics"] == 0
+    assert not judge(found)["claims_where_nothing_is_hidden"]
