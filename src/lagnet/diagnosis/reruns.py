@@ -18,7 +18,7 @@ from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, with
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, lasting, set_aside, too_much
-from lagnet.diagnosis.problem.problem import Problem, blurred_speed
+from lagnet.diagnosis.problem.problem import Problem, blurred_speed, thinned
 from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
@@ -172,7 +172,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         masked = set_aside(problem, events)
         if too_much(problem, masked):
             return _with_differing_recordings(state, scan, again) or replace(state, events=events)
-        clean = again(fit_sign_model(replace(masked, slow=blurred_speed(state.fit), straight=None, held=None)))
+        clean = again(fit_sign_model(replace(masked, slow=blurred_speed(thinned(state.fit)), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = detect_events(whole, clean.refit.effects, state.noise)
         slack = SMEAR / problem.bandwidth

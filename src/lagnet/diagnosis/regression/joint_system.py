@@ -110,7 +110,7 @@ def joint_system(equations: NormalEquations, joint: int, taken: dict[int, np.nda
     theta = np.concatenate([np.zeros(0), *felt.values()])
 
     def made() -> JointSystem:
-        parts = (take_off(x, columns, theta, own) for x in (equations.total[joint], equations.folds[joint]))
-        return JointSystem(equations.library, joint, *parts)
+        total, folds = (take_off(x, columns, theta, own) for x in (equations.total[joint], equations.folds[joint]))
+        return JointSystem(equations.library, joint, total, folds)
 
     return made() if felt else equations.remembered(joint, made)
