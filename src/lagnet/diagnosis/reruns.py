@@ -51,7 +51,9 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     if free is None:
         return first
     second = again(free)
-    return first if is_puzzled(against_given(second)) else second
+    if is_puzzled(against_given(second)):
+        return first
+    return replace(second, rejected=(*first.rejected, *second.rejected))  # why no body was named stays told
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
