@@ -40,6 +40,7 @@ class Row:
     Args:
         arm, corruption: what was corrupted and how.
         seconds: wall time of the whole diagnosis (of the checks alone where it was not run).
+        cpu_seconds: processor time of the same, which is what it takes on a machine of its own.
         refused: the sentence, or "".
         told: sentences of the verdict's `data_quality`.
         cause_told: whether one of them names the cause.
@@ -50,6 +51,7 @@ class Row:
     arm: str
     corruption: str
     seconds: float
+    cpu_seconds: float
     refused: str
     told: tuple[str, ...]
     cause_told: bool
@@ -68,8 +70,6 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     rows = table([c for c in CORRUPTIONS if not quick or c.name in QUICK], others=() if quick else OTHERS)
-    for row in rows:
-        print(f"{row.corruption:36} {row.seconds:6.1f} s  {'answered' if row.answered else 'NOT ANSWERED'}", flush=True)
     if quick:
         assert all(row.answered for row in rows)
         return
@@ -105,16 +105,18 @@ def table(corruptions: Sequence[Corruption], others: Sequence[str] = ()) -> list
 
 
 def _diagnosed(robot, arm: str, corruption: Corruption, recordings: list[Recording], true: set[str]) -> Row:
-    began, refused, told, names = time.perf_counter(), "", (), None
+    began, cpu, refused, told, names = time.perf_counter(), time.process_time(), "", (), None
     try:
         verdict = lagnet.diagnose(recordings, robot=robot).verdict
         names = tuple(f"{e.effect} at {e.joint}" for e in verdict.effects)
         told = tuple(d["detail"] for d in verdict.data_quality)
     except LagnetError as error:
         refused = str(error)
-    seconds = time.perf_counter() - began
+    seconds, cpu = time.perf_counter() - began, time.process_time() - cpu
     cause = any(word in text for text in (refused, *told) for word in corruption.words)
-    return Row(arm, corruption.name, seconds, refused, told, cause, names, len(set(names or ()) - true))
+    row = Row(arm, corruption.name, seconds, cpu, refused, told, cause, names, len(set(names or ()) - true))
+    print(f"{row.corruption:36} {cpu:6.1f} s  {'answered' if row.answered else 'NOT ANSWERED'}", flush=True)
+    return row
 
 
 def drawn() -> list[Row]:
@@ -126,18 +128,18 @@ def drawn() -> list[Row]:
         given = list(recordings or plant(robot, 100 + k))
         fitting = [c for c in CORRUPTIONS if c.least_joints <= robot.n_dof and _changes(c, robot.joints)]
         corruption = fitting[int(rng.integers(len(fitting)))]
-        began = time.perf_counter()
-        found = inspect_quality(corruption.do(given, rng), robot)
-        rows.append(_inspected(name, corruption, found, time.perf_counter() - began))
+        broken, began, cpu = corruption.do(given, rng), time.perf_counter(), time.process_time()
+        found = inspect_quality(broken, robot)
+        rows.append(_inspected(name, corruption, found, (time.perf_counter() - began, time.process_time() - cpu)))
         print(f"{name:14} {corruption.name:36} {'told' if rows[-1].cause_told else 'NOT TOLD'}", flush=True)
     return rows
 
 
-def _inspected(arm: str, corruption: Corruption, found: Sequence[Finding], seconds: float) -> Row:
+def _inspected(arm: str, corruption: Corruption, found: Sequence[Finding], seconds: tuple[float, float]) -> Row:
     told = tuple(f.detail for f in found)
     refused = next((f.sentence() for f in found if f.refused), "")
     cause = any(word in text for text in told for word in corruption.words)
-    return Row(arm, corruption.name, seconds, refused, told, cause, None, 0)
+    return Row(arm, corruption.name, *seconds, refused, told, cause, None, 0)
 
 
 def _changes(corruption: Corruption, joints: tuple[str, ...]) -> bool:
@@ -171,6 +173,7 @@ def summary(rows: Sequence[Row], more: Sequence[Row], alarms: Sequence[str]) -> 
         "table_answered": sum(r.answered for r in rows),
         "table_wrong_names": sum(r.wrong_names for r in rows),
         "table_slowest_s": max(r.seconds for r in rows),
+        "table_slowest_cpu_s": max(r.cpu_seconds for r in rows),
         "drawn": len(more),
         "drawn_cause_told": sum(r.cause_told for r in more),
         "sound_recordings": SOUND,
