@@ -161,6 +161,26 @@ def delay_beside_friction(b: Bench) -> Candidate:
     return b.candidate("late", record, ["coulomb_friction", "time_delay"])
 
 
+def _late(b: Bench, lag: float) -> Candidate:
+    """Torque of the joint logged later by a lag [s]."""
+
+    def record(seed: int) -> Any:
+        one = b.plant().record(seed)
+        tau = np.array(one.tau)
+        tau[:, JOINT] = CubicSpline(one.time, tau[:, JOINT])(np.maximum(one.time - lag, 0.0))
+        return replace(one, tau=tau)
+
+    return b.candidate(f"{lag} s late", record, ["time_delay"])
+
+
+def later_than_is_searched(b: Bench) -> Candidate:
+    return _late(b, 0.3)
+
+
+def late_by_less(b: Bench) -> Candidate:
+    return _late(b, 0.1)
+
+
 def gain_beside_another_law(b: Bench) -> Candidate:
     return b.of("root", lambda q, v, a, t: 6.0 * np.sign(v) * np.abs(v) ** 0.7, "viscous_friction", "torque_gain")
 
@@ -184,5 +204,6 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
     "surrogate_terms": (cubic_drag_as_quadratic, "quadratic_drag", quadratic_drag),
     "impossible_density": (mass_in_one_point, "link_inertia", tool_on_a_link),
     "reversal_delay": (early_friction_as_delay, "time_delay", delay_beside_friction),
+    "value_at_bound": (later_than_is_searched, "time_delay", late_by_less),
     "not_significant": (gain_beside_another_law, "torque_gain", small_friction),
 }

@@ -13,6 +13,7 @@ from lagnet.diagnosis.rules.not_significant import NotSignificant
 from lagnet.diagnosis.rules.reversal_delay import ReversalDelay
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
+from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
 
 RULES: tuple[RejectionRule, ...] = (
     CollinearWithBody(),
@@ -24,5 +25,6 @@ RULES: tuple[RejectionRule, ...] = (
     SurrogateTerms(),
     ImpossibleDensity(),
     ReversalDelay(),
+    ValueAtBound(),
     NotSignificant(),
 )
