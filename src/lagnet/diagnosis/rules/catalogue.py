@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
 from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
+from lagnet.diagnosis.rules.distant_centre import DistantCentre
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
 from lagnet.diagnosis.rules.lack_of_fit import LackOfFit
 from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
@@ -24,6 +25,7 @@ RULES: tuple[RejectionRule, ...] = (
     LackOfFit(),
     SurrogateTerms(),
     ImpossibleDensity(),
+    DistantCentre(),
     ReversalDelay(),
     ValueAtBound(),
     NotSignificant(),
