@@ -1,7 +1,8 @@
 """Bad data is told as bad data: the table of corruptions on a UR-5, and more drawn by a seed over five arms.
 
-python -m validation.bad_data.study            # writes result.json
-python -m validation.bad_data.study --quick    # three rows, writes nothing
+python -m validation.bad_data.study                  # writes result.json, part by part
+python -m validation.bad_data.study --parts drawn    # one part anew, the others as they stand there
+python -m validation.bad_data.study --quick          # three rows, writes nothing
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import argparse
 import json
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from lagnet.rigid_body.robot import Robot
 from validation.bad_data.corruptions import CORRUPTIONS, Corruption
 from validation.bad_data.sound import SoundSettings, drawn_settings, sound_recording
 
-HERE = Path(__file__).parent
+RESULT = Path(__file__).with_name("result.json")
 ARMS, REAL = ("ur5", "panda", "kinova"), ("ur10e", "staubli_tx40")
 DRAWN, SOUND, SEED = 60, 200, 1
 OTHERS = ("ur10", "ur3", "kinova", "z1")
@@ -68,13 +69,17 @@ def main() -> None:
     """Runs the study."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
-    quick = parser.parse_args().quick
-    rows = table([c for c in CORRUPTIONS if not quick or c.name in QUICK], others=() if quick else OTHERS)
-    if quick:
-        assert all(row.answered for row in rows)
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
+    asked = parser.parse_args()
+    if asked.quick:
+        assert all(row.answered for row in table([c for c in CORRUPTIONS if c.name in QUICK]))
         return
-    more, alarms = drawn(), sound()
-    write_whole(HERE / "result.json", finite_json(summary(rows, more, alarms)))
+    for part in asked.parts:
+        write_whole(RESULT, finite_json(with_part(_known(), part, PARTS[part]())))
+
+
+def _known() -> dict:
+    return json.loads(RESULT.read_text(encoding="utf-8")) if RESULT.exists() else {"figures": {}}
 
 
 def plant(robot: Robot, seed: int) -> list[Recording]:
@@ -166,21 +171,42 @@ def sound() -> list[str]:
     return alarms
 
 
-def summary(rows: Sequence[Row], more: Sequence[Row], alarms: Sequence[str]) -> dict:
-    """The figures and all rows."""
-    figures = {
-        "table_rows": len(rows),
-        "table_answered": sum(r.answered for r in rows),
-        "table_wrong_names": sum(r.wrong_names for r in rows),
-        "table_slowest_s": max(r.seconds for r in rows),
-        "table_slowest_cpu_s": max(r.cpu_seconds for r in rows),
-        "drawn": len(more),
-        "drawn_cause_told": sum(r.cause_told for r in more),
-        "sound_recordings": SOUND,
-        "alarms_on_sound_recordings": len(alarms),
+PARTS: dict[str, Callable[[], list]] = {
+    "table": lambda: table(CORRUPTIONS, OTHERS),
+    "drawn": drawn,
+    "sound": sound,
+}
+
+
+def with_part(result: dict, part: str, found: list) -> dict:
+    """The result with the figures and all rows of one part in the place of those before."""
+    figures = {"table": _of_table, "drawn": _of_drawn, "sound": _of_alarms}[part](found)
+    rows = [asdict(row) if isinstance(row, Row) else row for row in found]
+    kept = {k: v for k, v in result["figures"].items() if k != part}
+    return {**result, "figures": {**kept, part: figures}, part: json.loads(json.dumps(rows))}
+
+
+def _of_table(rows: Sequence[Row]) -> dict:
+    return {
+        "rows": len(rows),
+        "answered": sum(r.answered for r in rows),
+        "cause_told": sum(r.cause_told for r in rows),
+        "wrong_names": sum(r.wrong_names for r in rows),
+        "slowest_s": max(r.seconds for r in rows),
+        "slowest_cpu_s": max(r.cpu_seconds for r in rows),
     }
-    plain = json.loads(json.dumps([asdict(r) for r in (*rows, *more)]))
-    return {"figures": figures, "alarms": list(alarms), "rows": plain}
+
+
+def _of_drawn(rows: Sequence[Row]) -> dict:
+    arms = dict.fromkeys(r.arm for r in rows)
+    told = {
+        arm: f"{sum(r.cause_told for r in rows if r.arm == arm)} of {sum(r.arm == arm for r in rows)}" for arm in arms
+    }
+    return {"rows": len(rows), "cause_told": sum(r.cause_told for r in rows), "cause_told_by_arm": told}
+
+
+def _of_alarms(alarms: Sequence[str]) -> dict:
+    return {"recordings": SOUND, "alarms": len(alarms)}
 
 
 if __name__ == "__main__":
