@@ -75,7 +75,13 @@ def main() -> None:
         assert all(row.answered for row in table([c for c in CORRUPTIONS if c.name in QUICK]))
         return
     for part in asked.parts:
-        write_whole(RESULT, finite_json(with_part(_known(), part, PARTS[part]())))
+        write(with_part(_known(), part, PARTS[part]()))
+
+
+def write(result: dict) -> None:
+    """Writes the result; sentences name files of `LAGNET_DATA_DIR` without the place of that folder."""
+    place = str(Path(os.environ["LAGNET_DATA_DIR"])) + os.sep
+    write_whole(RESULT, finite_json(json.loads(json.dumps(result).replace(json.dumps(place)[1:-1], ""))))
 
 
 def _known() -> dict:
