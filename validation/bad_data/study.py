@@ -1,7 +1,8 @@
 """Bad data is told as bad data: the table of corruptions on a UR-5, and more drawn by a seed over five arms.
 
-python -m validation.bad_data.study            # writes result.json
-python -m validation.bad_data.study --quick    # three rows, writes nothing
+python -m validation.bad_data.study                  # writes result.json, part by part
+python -m validation.bad_data.study --parts drawn    # one part anew, the others as they stand there
+python -m validation.bad_data.study --quick          # three rows, writes nothing
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import argparse
 import json
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from lagnet.rigid_body.robot import Robot
 from validation.bad_data.corruptions import CORRUPTIONS, Corruption
 from validation.bad_data.sound import SoundSettings, drawn_settings, sound_recording
 
-HERE = Path(__file__).parent
+RESULT = Path(__file__).with_name("result.json")
 ARMS, REAL = ("ur5", "panda", "kinova"), ("ur10e", "staubli_tx40")
 DRAWN, SOUND, SEED = 60, 200, 1
 OTHERS = ("ur10", "ur3", "kinova", "z1")
@@ -40,6 +41,7 @@ class Row:
     Args:
         arm, corruption: what was corrupted and how.
         seconds: wall time of the whole diagnosis (of the checks alone where it was not run).
+        cpu_seconds: processor time of the same, which is what it takes on a machine of its own.
         refused: the sentence, or "".
         told: sentences of the verdict's `data_quality`.
         cause_told: whether one of them names the cause.
@@ -50,6 +52,7 @@ class Row:
     arm: str
     corruption: str
     seconds: float
+    cpu_seconds: float
     refused: str
     told: tuple[str, ...]
     cause_told: bool
@@ -66,15 +69,23 @@ def main() -> None:
     """Runs the study."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
-    quick = parser.parse_args().quick
-    rows = table([c for c in CORRUPTIONS if not quick or c.name in QUICK], others=() if quick else OTHERS)
-    for row in rows:
-        print(f"{row.corruption:36} {row.seconds:6.1f} s  {'answered' if row.answered else 'NOT ANSWERED'}", flush=True)
-    if quick:
-        assert all(row.answered for row in rows)
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
+    asked = parser.parse_args()
+    if asked.quick:
+        assert all(row.answered for row in table([c for c in CORRUPTIONS if c.name in QUICK]))
         return
-    more, alarms = drawn(), sound()
-    write_whole(HERE / "result.json", finite_json(summary(rows, more, alarms)))
+    for part in asked.parts:
+        write(with_part(_known(), part, PARTS[part]()))
+
+
+def write(result: dict) -> None:
+    """Writes the result; sentences name files of `LAGNET_DATA_DIR` without the place of that folder."""
+    place = str(Path(os.environ["LAGNET_DATA_DIR"])) + os.sep
+    write_whole(RESULT, finite_json(json.loads(json.dumps(result).replace(json.dumps(place)[1:-1], ""))))
+
+
+def _known() -> dict:
+    return json.loads(RESULT.read_text(encoding="utf-8")) if RESULT.exists() else {"figures": {}}
 
 
 def plant(robot: Robot, seed: int) -> list[Recording]:
@@ -105,16 +116,18 @@ def table(corruptions: Sequence[Corruption], others: Sequence[str] = ()) -> list
 
 
 def _diagnosed(robot, arm: str, corruption: Corruption, recordings: list[Recording], true: set[str]) -> Row:
-    began, refused, told, names = time.perf_counter(), "", (), None
+    began, cpu, refused, told, names = time.perf_counter(), time.process_time(), "", (), None
     try:
         verdict = lagnet.diagnose(recordings, robot=robot).verdict
         names = tuple(f"{e.effect} at {e.joint}" for e in verdict.effects)
         told = tuple(d["detail"] for d in verdict.data_quality)
     except LagnetError as error:
         refused = str(error)
-    seconds = time.perf_counter() - began
+    seconds, cpu = time.perf_counter() - began, time.process_time() - cpu
     cause = any(word in text for text in (refused, *told) for word in corruption.words)
-    return Row(arm, corruption.name, seconds, refused, told, cause, names, len(set(names or ()) - true))
+    row = Row(arm, corruption.name, seconds, cpu, refused, told, cause, names, len(set(names or ()) - true))
+    print(f"{row.corruption:36} {cpu:6.1f} s  {'answered' if row.answered else 'NOT ANSWERED'}", flush=True)
+    return row
 
 
 def drawn() -> list[Row]:
@@ -126,18 +139,18 @@ def drawn() -> list[Row]:
         given = list(recordings or plant(robot, 100 + k))
         fitting = [c for c in CORRUPTIONS if c.least_joints <= robot.n_dof and _changes(c, robot.joints)]
         corruption = fitting[int(rng.integers(len(fitting)))]
-        began = time.perf_counter()
-        found = inspect_quality(corruption.do(given, rng), robot)
-        rows.append(_inspected(name, corruption, found, time.perf_counter() - began))
+        broken, began, cpu = corruption.do(given, rng), time.perf_counter(), time.process_time()
+        found = inspect_quality(broken, robot)
+        rows.append(_inspected(name, corruption, found, (time.perf_counter() - began, time.process_time() - cpu)))
         print(f"{name:14} {corruption.name:36} {'told' if rows[-1].cause_told else 'NOT TOLD'}", flush=True)
     return rows
 
 
-def _inspected(arm: str, corruption: Corruption, found: Sequence[Finding], seconds: float) -> Row:
+def _inspected(arm: str, corruption: Corruption, found: Sequence[Finding], seconds: tuple[float, float]) -> Row:
     told = tuple(f.detail for f in found)
     refused = next((f.sentence() for f in found if f.refused), "")
     cause = any(word in text for text in told for word in corruption.words)
-    return Row(arm, corruption.name, seconds, refused, told, cause, None, 0)
+    return Row(arm, corruption.name, *seconds, refused, told, cause, None, 0)
 
 
 def _changes(corruption: Corruption, joints: tuple[str, ...]) -> bool:
@@ -164,20 +177,42 @@ def sound() -> list[str]:
     return alarms
 
 
-def summary(rows: Sequence[Row], more: Sequence[Row], alarms: Sequence[str]) -> dict:
-    """The figures and all rows."""
-    figures = {
-        "table_rows": len(rows),
-        "table_answered": sum(r.answered for r in rows),
-        "table_wrong_names": sum(r.wrong_names for r in rows),
-        "table_slowest_s": max(r.seconds for r in rows),
-        "drawn": len(more),
-        "drawn_cause_told": sum(r.cause_told for r in more),
-        "sound_recordings": SOUND,
-        "alarms_on_sound_recordings": len(alarms),
+PARTS: dict[str, Callable[[], list]] = {
+    "table": lambda: table(CORRUPTIONS, OTHERS),
+    "drawn": drawn,
+    "sound": sound,
+}
+
+
+def with_part(result: dict, part: str, found: list) -> dict:
+    """The result with the figures and all rows of one part in the place of those before."""
+    figures = {"table": _of_table, "drawn": _of_drawn, "sound": _of_alarms}[part](found)
+    rows = [asdict(row) if isinstance(row, Row) else row for row in found]
+    kept = {k: v for k, v in result["figures"].items() if k != part}
+    return {**result, "figures": {**kept, part: figures}, part: json.loads(json.dumps(rows))}
+
+
+def _of_table(rows: Sequence[Row]) -> dict:
+    return {
+        "rows": len(rows),
+        "answered": sum(r.answered for r in rows),
+        "cause_told": sum(r.cause_told for r in rows),
+        "wrong_names": sum(r.wrong_names for r in rows),
+        "slowest_s": max(r.seconds for r in rows),
+        "slowest_cpu_s": max(r.cpu_seconds for r in rows),
     }
-    plain = json.loads(json.dumps([asdict(r) for r in (*rows, *more)]))
-    return {"figures": figures, "alarms": list(alarms), "rows": plain}
+
+
+def _of_drawn(rows: Sequence[Row]) -> dict:
+    arms = dict.fromkeys(r.arm for r in rows)
+    told = {
+        arm: f"{sum(r.cause_told for r in rows if r.arm == arm)} of {sum(r.arm == arm for r in rows)}" for arm in arms
+    }
+    return {"rows": len(rows), "cause_told": sum(r.cause_told for r in rows), "cause_told_by_arm": told}
+
+
+def _of_alarms(alarms: Sequence[str]) -> dict:
+    return {"recordings": SOUND, "alarms": len(alarms)}
 
 
 if __name__ == "__main__":

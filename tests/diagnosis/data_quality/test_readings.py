@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from validation.bad_data.corruptions import CORRUPTIONS
 from validation.bad_data.sound import SoundSettings, sound_recording
 
+from lagnet.diagnosis.data_quality.check import fits_far_better
 from lagnet.diagnosis.data_quality.checks import CHECK_NAMES
 from lagnet.diagnosis.data_quality.inspect import inspect_quality
 from lagnet.rigid_body.robot import Robot, load_description
@@ -49,6 +52,39 @@ def test_an_arm_with_much_that_the_model_lacks_is_no_bad_data(ur5) -> None:
     loaded = ur5.with_inertial_parameters(_heavier(ur5)) if hasattr(ur5, "with_inertial_parameters") else ur5
     recording = sound_recording(loaded, settings, np.random.default_rng(3))
     assert not [f.sentence() for f in inspect_quality([recording], ur5)]
+
+
+WRISTS = 3  # joints of which the model explains no torque
+
+
+@pytest.fixture(scope="module")
+def half_explained(recordings) -> list:
+    """Recordings whose wrists carry torques that no rigid body explains, as strong wrist friction would."""
+    rng, out = np.random.default_rng(5), []
+    for r in recordings:
+        dof = r.n_dof
+        size = np.where(np.arange(dof) < dof - WRISTS, 0.25, 8.0) * np.std(r.tau, axis=0)
+        waves = np.sin(np.outer(r.time, rng.uniform(1.0, 4.0, dof)) + rng.uniform(0, 6, dof))
+        out.append(replace(r, tau=r.tau + size * waves))
+    return out
+
+
+def test_joints_that_the_model_explains_in_no_reading_raise_no_alarm(ur5, half_explained) -> None:
+    assert not [f.sentence() for f in inspect_quality(half_explained, ur5)]
+
+
+@pytest.mark.parametrize("name", ["joints reversed", "torque 300 ms late"])
+def test_the_cause_is_told_by_the_joints_that_the_model_explains(name, ur5, half_explained) -> None:
+    corruption = next(c for c in CORRUPTIONS if c.name == name)
+    found = inspect_quality(corruption.do(list(half_explained), np.random.default_rng(1)), ur5)
+    assert any(word in f.detail for f in found for word in corruption.words), [f.sentence() for f in found]
+
+
+def test_joints_that_no_interpretation_explains_tell_nothing() -> None:
+    neither, right, wrong = [0.9, 1.0, 1.1], [0.05, 0.05, 0.05], [3.0, 3.0, 3.0]
+    assert fits_far_better(np.array(right + neither), np.array(wrong + neither))
+    assert not fits_far_better(np.array(right[:1] + neither), np.array(wrong[:1] + neither))
+    assert not fits_far_better(np.array([0.05, 5.0, 5.0]), np.array([3.0, 0.9, 0.9]))
 
 
 def _heavier(robot: Robot) -> np.ndarray:

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from tests.diagnosis.posed import Posed, pose
 
 from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.rigid_body.inertia import parameters_of_body
 
 JOINT = 1
 MASS = 1.5  # [kg]
@@ -133,6 +134,17 @@ def mass_in_one_point(b: Bench) -> Candidate:
     return b.candidate("heavy", b.plant(heavy).record, ["link_inertia"])
 
 
+def link_with_its_mass_far_away(b: Bench) -> Candidate:
+    """A link whose centre of mass would lie five metres off."""
+
+    def far(q, v, a, body):
+        own = np.asarray(b.arm.inertial_parameters())[JOINT]
+        change = parameters_of_body(own[0], np.array([5.0, 0.0, 0.0]), 0.1 * np.eye(3)) - own
+        return b.arm.link_regressor(JOINT, q, v, a) @ change
+
+    return b.candidate("far", b.plant(far).record, ["link_inertia"])
+
+
 def tool_on_a_link(b: Bench) -> Candidate:
     def tool(q, v, a, body):
         change = np.array([2.0, 0.2, 0.1, 0.0, 0.06, 0.0, 0.06, 0.0, 0.0, 0.06])
@@ -161,6 +173,26 @@ def delay_beside_friction(b: Bench) -> Candidate:
     return b.candidate("late", record, ["coulomb_friction", "time_delay"])
 
 
+def _late(b: Bench, lag: float) -> Candidate:
+    """Torque of the joint logged later by a lag [s]."""
+
+    def record(seed: int) -> Any:
+        one = b.plant().record(seed)
+        tau = np.array(one.tau)
+        tau[:, JOINT] = CubicSpline(one.time, tau[:, JOINT])(np.maximum(one.time - lag, 0.0))
+        return replace(one, tau=tau)
+
+    return b.candidate(f"{lag} s late", record, ["time_delay"])
+
+
+def later_than_is_searched(b: Bench) -> Candidate:
+    return _late(b, 0.3)
+
+
+def late_by_less(b: Bench) -> Candidate:
+    return _late(b, 0.1)
+
+
 def gain_beside_another_law(b: Bench) -> Candidate:
     return b.of("root", lambda q, v, a, t: 6.0 * np.sign(v) * np.abs(v) ** 0.7, "viscous_friction", "torque_gain")
 
@@ -183,6 +215,8 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
     "lack_of_fit": (friction_of_another_form, "viscous_friction", friction_named_rightly),
     "surrogate_terms": (cubic_drag_as_quadratic, "quadratic_drag", quadratic_drag),
     "impossible_density": (mass_in_one_point, "link_inertia", tool_on_a_link),
+    "distant_centre": (link_with_its_mass_far_away, "link_inertia", tool_on_a_link),
     "reversal_delay": (early_friction_as_delay, "time_delay", delay_beside_friction),
+    "value_at_bound": (later_than_is_searched, "time_delay", late_by_less),
     "not_significant": (gain_beside_another_law, "torque_gain", small_friction),
 }

@@ -21,7 +21,17 @@ def test_a_share_is_a_percentage_without_a_power_of_ten(share: float, words: str
 def test_a_sentence_tells_what_the_recordings_determine() -> None:
     open_, told = NamedParameter("dm", 1.5, "kg", (-2e6, 2e6)), NamedParameter("dmcx", 0.25, "kg m", (0.2, 0.3))
     assert values([open_, told]) == "dmcx = 0.25 kg m"
-    assert values([open_]) == "dm = 1.5 kg"
+    assert values([open_]) == "dm not determined"
+
+
+def test_a_mass_that_may_be_tons_either_way_is_no_value() -> None:
+    tons, told = NamedParameter("dm", 1242.0, "kg", (-3e5, 3e5)), NamedParameter("dmcx", 0.25, "kg m", (0.2, 0.3))
+    assert values([tons, told]) == "dmcx = 0.25 kg m"
+
+
+def test_values_that_are_known_roughly_or_near_zero_are_told() -> None:
+    rough, zero = NamedParameter("dm", 2.0, "kg", (-1.0, 5.0)), NamedParameter("theta", 1e-5, "rad", (-1e-3, 1e-3))
+    assert values([rough, zero]) == "dm = 2 kg, theta = 1e-05 rad"
 
 
 def effect_at(joint: str | None, left: float, interval: tuple[float, float] | None = None) -> EffectFound:

@@ -18,6 +18,9 @@ FEW = 160  # samples on which all readings are compared
 MANY = 1200  # samples on which the best of them are
 FITS = 0.2  # largest misfit of a reading that fits
 BETTER = 0.35  # largest misfit of a reading over that as recorded, and over that with another mounting and body
+EXPLAINED = 0.6  # misfit below which the model explains a joint
+WORSE = 2.0  # misfit above which a joint speaks against the model
+LEAST_JOINTS = 0.5  # share of the joints that must speak for or against a reading
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,28 +57,50 @@ class Evidence:
 
     def accepts(self, reading: Reading) -> bool:
         """Whether a reading fits, and far better than the recordings as they are."""
-        return reading.misfit < min(FITS, BETTER * self.as_recorded)
+        return reading.agreed or fits_far_better(reading.misfits, self.misfits)
 
 
-@dataclass(frozen=True)
+def fits_far_better(misfits: np.ndarray, others: np.ndarray) -> bool:
+    """Whether misfit < FITS and misfit / other < BETTER, as geometric means over the joints that tell the two apart.
+
+    A joint whose torque the model explains neither way, such as a wrist of which it knows no friction, tells nothing.
+
+    Args:
+        misfits, others: of each joint in two interpretations, shape (dof,).
+    """
+    telling = (np.fmin(misfits, others) < EXPLAINED) | ~(np.fmax(misfits, others) < WORSE)
+    if not telling.any() or telling.mean() < LEAST_JOINTS:
+        return False
+    misfit = float(geometric_mean(misfits[telling]))
+    return misfit < min(FITS, BETTER * float(geometric_mean(others[telling])))
+
+
+@dataclass(frozen=True, eq=False)
 class Reading:
     """Another interpretation of recorded columns, with its misfit.
 
     Args:
         check: name of the check that proposes it.
         channel: columns that are interpreted otherwise.
-        misfit: geometric mean over the joints under this reading.
+        misfits: of each joint under this reading, shape (dof,).
         detail: sentence on what was found.
         mend: lines of the mapping file, or the step, that correct it.
         prior: factor on the misfit, above 1 for readings that are less common than others.
+        agreed: whether the joints, each judged alone, agree on it: then no other model is compared.
     """
 
     check: str
     channel: str
-    misfit: float
+    misfits: np.ndarray
     detail: str
     mend: str
     prior: float = 1.0
+    agreed: bool = False
+
+    @property
+    def misfit(self) -> float:
+        """Geometric mean of the misfits over all joints."""
+        return float(geometric_mean(self.misfits))
 
 
 class ReadingCheck(ABC):

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.data_quality.check import BETTER, Evidence
-from lagnet.diagnosis.data_quality.physics import misfit_with_mounting_and_body
+from lagnet.diagnosis.data_quality.misfit import geometric_mean
+from lagnet.diagnosis.data_quality.physics import misfits_with_mounting_and_body
 from lagnet.diagnosis.effort_column.decide import effort_column
 from lagnet.diagnosis.effort_column.finding import EffortFinding
 from lagnet.errors import LagnetError
@@ -44,8 +45,10 @@ def effort_findings(recordings: Sequence[Recording], robot: Any, evidence: Evide
         return ()
     if not _beyond_a_wrong_model(found):
         return ()
-    if found.kind not in COPIES and misfit_with_mounting_and_body(evidence) < BETTER * evidence.as_recorded:
-        return ()
+    if found.kind not in COPIES:
+        otherwise = float(geometric_mean(misfits_with_mounting_and_body(evidence)))
+        if otherwise < BETTER * evidence.as_recorded:
+            return ()
     told = found.data_quality("")
     return () if told is None else (replace(told, harmful=True),)
 

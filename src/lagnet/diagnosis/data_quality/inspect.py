@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.data_quality.check import BETTER, Evidence, Reading
+from lagnet.diagnosis.data_quality.check import BETTER, Evidence, Reading, fits_far_better
 from lagnet.diagnosis.data_quality.checks import CHECKS
 from lagnet.diagnosis.data_quality.effort import effort_findings
-from lagnet.diagnosis.data_quality.physics import misfit_with_mounting_and_body
+from lagnet.diagnosis.data_quality.physics import misfits_with_mounting_and_body
 from lagnet.diagnosis.data_quality.samples import smoothed_stretches
 from lagnet.errors import DiagnosisError
 from lagnet.recordings.quality.finding import CERTAIN, Finding
@@ -92,17 +92,21 @@ def _readings(recordings: Sequence[Recording], robot: Any) -> tuple[Finding, ...
         for check in CHECKS:
             if check.always or (suspect and not (check.last and any(map(evidence.accepts, tried)))):
                 tried.extend(check().readings(evidence))
-        best = min(tried, key=lambda reading: reading.misfit * reading.prior, default=None)
-        if (
-            best is None
-            or not evidence.accepts(best)
-            or not best.misfit < BETTER * misfit_with_mounting_and_body(evidence)
-        ):
+        best = min(tried, key=lambda reading: (not reading.agreed, reading.misfit * reading.prior), default=None)
+        if best is None or not _is_told(best, evidence):
             return effort_findings(recordings, robot, evidence) if suspect else ()
-    return (_finding(best, tried),)
+    return (_finding(best, [r for r in tried if evidence.accepts(r)]),)
 
 
-def _finding(best: Reading, tried: Sequence[Reading]) -> Finding:
-    others = [r for r in tried if r.check != best.check and r.misfit * r.prior < best.misfit * best.prior / BETTER]
+def _is_told(reading: Reading, evidence: Evidence) -> bool:
+    """Whether a reading is accepted, and explains what no other mounting and body would."""
+    if not evidence.accepts(reading):
+        return False
+    return reading.agreed or fits_far_better(reading.misfits, misfits_with_mounting_and_body(evidence))
+
+
+def _finding(best: Reading, accepted: Sequence[Reading]) -> Finding:
+    rivals = () if best.agreed else [r for r in accepted if r.check != best.check]
+    others = [r for r in rivals if r.misfit * r.prior < best.misfit * best.prior / BETTER]
     also = f"; or {' or '.join(r.detail for r in others[:1])}" if others else ""
     return Finding(best.check, "", best.channel, None, CERTAIN, best.detail + also, best.mend, harmful=True)

@@ -54,18 +54,20 @@ def joint_misfits(recorded: np.ndarray, modelled: np.ndarray, nuisance: np.ndarr
     return np.mean(residual**2, axis=-1) / np.maximum(power, 1e-300)
 
 
-def misfit(samples: Samples, modelled: np.ndarray) -> float:
-    """Geometric mean of the joints' misfits."""
-    return float(geometric_mean(misfits(samples, modelled)))
-
-
 def geometric_mean(misfit: np.ndarray) -> np.ndarray:
     """exp mean log over the last axis, of misfits cut to [LOWEST, HIGHEST]."""
     finite = np.where(np.isfinite(misfit), misfit, HIGHEST)
     return np.exp(np.mean(np.log(np.clip(finite, LOWEST, HIGHEST)), axis=-1))
 
 
-def misfit_of(model: InverseDynamics, samples: Samples) -> float:
-    """Geometric mean of the joints' misfits to a model; HIGHEST where its torque is not finite."""
+def misfits_of(model: InverseDynamics, samples: Samples) -> np.ndarray:
+    """Misfit of each joint to a model, shape (dof,); HIGHEST where the model's torque is not finite."""
     torque = np.asarray(model.inverse_dynamics(samples.q, samples.v, samples.a))
-    return misfit(samples, torque) if np.isfinite(torque).all() else HIGHEST
+    if not np.isfinite(torque).all():
+        return np.full(samples.tau.shape[1], HIGHEST)
+    return misfits(samples, torque)
+
+
+def misfit_of(model: InverseDynamics, samples: Samples) -> float:
+    """Geometric mean of the joints' misfits to a model."""
+    return float(geometric_mean(misfits_of(model, samples)))

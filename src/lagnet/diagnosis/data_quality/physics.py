@@ -12,18 +12,18 @@ from lagnet.types import RigidBodyModel, has_regressor
 DIRECTIONS = np.concatenate([np.eye(3), -np.eye(3)])
 
 
-def misfit_with_mounting_and_body(evidence: Evidence) -> float:
-    """Least misfit of the arm as mounted, upright, upside down or sideways, with any body on its last link."""
+def misfits_with_mounting_and_body(evidence: Evidence) -> np.ndarray:
+    """Misfits (dof,) of the arm as mounted, upright, upside down or sideways, with any body on its last link."""
     model = evidence.model
     if not has_regressor(model):
-        return evidence.as_recorded
+        return evidence.misfits
     size = float(np.linalg.norm(np.asarray(model.gravity, dtype=float))) or 9.81
     mounted = [model, *(model.with_gravity(size * direction) for direction in DIRECTIONS)]
-    return min(_with_body(one, evidence.many) for one in mounted)
+    return min((_with_body(one, evidence.many) for one in mounted), key=geometric_mean)
 
 
-def _with_body(model: RigidBodyModel, samples: Samples) -> float:
-    """Misfit with the body Δπ on the last link that minimises it, each joint in units of its own torque."""
+def _with_body(model: RigidBodyModel, samples: Samples) -> np.ndarray:
+    """Misfits (dof,) with the body Δπ on the last link that minimises them, each joint in units of its own torque."""
     residual = samples.tau - model.inverse_dynamics(samples.q, samples.v, samples.a)
     body = model.link_regressor(model.n_dof - 1, samples.q, samples.v, samples.a)
     nuisance = nuisance_terms(samples.v.T, samples.a.T)
@@ -34,4 +34,4 @@ def _with_body(model: RigidBodyModel, samples: Samples) -> float:
     columns = np.stack([without_nuisance(nuisance, body[..., k].T) / size for k in range(body.shape[2])], axis=-1)
     table = columns.reshape(-1, columns.shape[-1])
     fitted, *_ = np.linalg.lstsq(table, target.ravel(), rcond=1e-9)
-    return float(geometric_mean(np.mean((target - columns @ fitted) ** 2, axis=1)))
+    return np.mean((target - columns @ fitted) ** 2, axis=1)

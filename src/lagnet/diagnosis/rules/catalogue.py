@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
 from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
+from lagnet.diagnosis.rules.distant_centre import DistantCentre
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
 from lagnet.diagnosis.rules.lack_of_fit import LackOfFit
 from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
@@ -13,6 +14,7 @@ from lagnet.diagnosis.rules.not_significant import NotSignificant
 from lagnet.diagnosis.rules.reversal_delay import ReversalDelay
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
+from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
 
 RULES: tuple[RejectionRule, ...] = (
     CollinearWithBody(),
@@ -23,6 +25,8 @@ RULES: tuple[RejectionRule, ...] = (
     LackOfFit(),
     SurrogateTerms(),
     ImpossibleDensity(),
+    DistantCentre(),
     ReversalDelay(),
+    ValueAtBound(),
     NotSignificant(),
 )

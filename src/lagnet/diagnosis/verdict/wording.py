@@ -11,6 +11,8 @@ from lagnet.effects.effect import Effect
 from lagnet.recordings.conditioning.condition import Conditioned
 
 MOST_PARAMETERS = 4  # that a sentence lists
+WIDEST = 30.0  # half widths of an interval that holds zero, over the value: beyond, the value says nothing
+LEAST_VALUE = 0.1  # in any unit: a value near zero with a narrow interval is told, too
 ALIKE = 1.5  # times one error that another is at most, to be told as the same
 LEAST_PERCENT = 0.01  # that is written as a number
 SELDOM_MET = (
@@ -37,9 +39,21 @@ def explain(
 
 
 def values(parameters: Sequence[NamedParameter]) -> str:
-    """The first few parameters that the recordings determine, with their values."""
-    determined = [p for p in parameters if p.ci95[1] - p.ci95[0] < 2.0 * NOT_SAID] or parameters
-    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in determined[:MOST_PARAMETERS])
+    """The first few parameters that the recordings determine, with their values; none of what they leave open."""
+    told = [p for p in parameters if is_told(p)]
+    if not told:
+        return f"{' and '.join(p.name for p in parameters[:MOST_PARAMETERS])} not determined"
+    return ", ".join(f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –") for p in told[:MOST_PARAMETERS])
+
+
+def is_told(parameter: NamedParameter) -> bool:
+    """Whether the half width of the 95 % interval is below NOT_SAID, and, where it holds zero, below 30 |value|.
+
+    A mass of 1,242 kg that may as well be minus or plus thirty tons is no value.
+    """
+    low, high = parameter.ci95
+    half = 0.5 * (high - low)
+    return half < NOT_SAID and (low > 0.0 or high < 0.0 or half <= WIDEST * max(abs(parameter.value), LEAST_VALUE))
 
 
 def explain_transient(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import misfit_of
+from lagnet.diagnosis.data_quality.misfit import misfit_of, misfits_of
 from lagnet.errors import RobotError
 from lagnet.rigid_body.named_robots import named_robots
 from lagnet.rigid_body.robot import Robot, load_description
@@ -30,7 +30,7 @@ class AnotherRobot(ReadingCheck):
             yield Reading(
                 self.name,
                 "",
-                misfit_of(robot, evidence.many),
+                misfits_of(robot, evidence.many),
                 f"the recordings fit the robot {name}, and not {getattr(evidence.model, 'source', '') or 'the model'}",
                 f"give --robot {name}, or the file that describes the arm that was recorded",
                 RARE,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import misfit_of
+from lagnet.diagnosis.data_quality.misfit import misfit_of, misfits_of
 from lagnet.diagnosis.data_quality.samples import Samples
 
 UNITS = {"minutes": 60.0, "hours": 3600.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
@@ -33,7 +33,7 @@ class ClockScale(ReadingCheck):
             yield Reading(
                 self.name,
                 "time",
-                misfit_of(evidence.model, scaled(evidence.many, factor)),
+                misfits_of(evidence.model, scaled(evidence.many, factor)),
                 f"the clock is {what}: accelerations as recorded do not fit the torques of any such arm",
                 f"[scale] time = {factor:.6g}",
                 1.0 if what.startswith("in ") else 1.2,

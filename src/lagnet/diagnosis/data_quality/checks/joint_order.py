@@ -9,7 +9,7 @@ from itertools import combinations, permutations
 import numpy as np
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import geometric_mean, joint_misfits, misfit_of, nuisance_terms
+from lagnet.diagnosis.data_quality.misfit import geometric_mean, joint_misfits, misfits_of, nuisance_terms
 from lagnet.diagnosis.data_quality.samples import Samples, thinned
 
 MOST_JOINTS = 6  # up to which all orders are tested: 720; beyond, the common ones
@@ -39,8 +39,8 @@ class JointOrder(ReadingCheck):
             if len(joints) > MOST_JOINTS:
                 best = tuple(dict.fromkeys(self._exchanged(evidence, order, kinds) for order in best))
             for order in best:
-                misfit = misfit_of(evidence.model, reordered(evidence.many, order, kinds))
-                yield reading_of(self.name, joints, order, kinds, misfit)
+                misfits = misfits_of(evidence.model, reordered(evidence.many, order, kinds))
+                yield reading_of(self.name, joints, order, kinds, misfits)
 
     def _exchanged(self, evidence: Evidence, order: Order, kinds: tuple[str, ...]) -> Order:
         """The order after exchanges of two columns, each time that of least misfit, until none is better."""
@@ -53,7 +53,9 @@ class JointOrder(ReadingCheck):
         return order
 
 
-def reading_of(name: str, joints: tuple[str, ...], order: Order, kinds: tuple[str, ...], misfit: float) -> Reading:
+def reading_of(
+    name: str, joints: tuple[str, ...], order: Order, kinds: tuple[str, ...], misfits: np.ndarray
+) -> Reading:
     """A reading of the columns in another order, with the lines that map them."""
     moved = [i for i, k in enumerate(order) if i != k]
     is_sorted = order == alphabetical(joints)
@@ -64,7 +66,7 @@ def reading_of(name: str, joints: tuple[str, ...], order: Order, kinds: tuple[st
     return Reading(
         name,
         " ".join(kinds),
-        misfit,
+        misfits,
         f"the columns of {columns} are in {what}, not in that of the model's joints: {listed}",
         f"map them with --columns: {mend}",
         SORTED if is_sorted else 1.0,

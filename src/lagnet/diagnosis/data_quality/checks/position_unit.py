@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
-from lagnet.diagnosis.data_quality.misfit import misfit_of
+from lagnet.diagnosis.data_quality.misfit import misfit_of, misfits_of
 from lagnet.diagnosis.data_quality.samples import Samples
 from lagnet.types import joint_types_of
 
@@ -32,7 +32,7 @@ class PositionUnit(ReadingCheck):
                 yield Reading(
                     self.name,
                     "q",
-                    misfit_of(evidence.model, scaled(evidence.many, factor, which)),
+                    misfits_of(evidence.model, scaled(evidence.many, factor, which)),
                     f"positions are in {unit}: so read, they fit the model's torques",
                     f"[scale] q = {factor:.7g}, and v and a alike"
                     if which.all()

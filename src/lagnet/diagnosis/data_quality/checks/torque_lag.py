@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
+from lagnet.diagnosis.data_quality.check import EXPLAINED, LEAST_JOINTS, Evidence, Reading, ReadingCheck
 from lagnet.diagnosis.data_quality.misfit import geometric_mean, misfits
 from lagnet.diagnosis.data_quality.samples import Samples, thinned
 
@@ -15,6 +15,8 @@ LONGEST = 1.5  # [s]
 LEAST = 0.15  # [s]: a smaller shift may be a delay of the drives, an effect of the catalogue
 TRIED = 31  # shifts to either side
 AGREE = 0.6  # share of joints whose misfit the shift must halve
+CLOSE = 0.15  # of the shift: distance of a joint's own best shift from it
+GAIN = 0.75  # largest misfit of a joint at the shift over that as recorded, for it to agree
 
 
 class TorqueLag(ReadingCheck):
@@ -38,23 +40,40 @@ class TorqueLag(ReadingCheck):
         fine = range(best - most // TRIED, best + most // TRIED + 1)
         scores |= {k: _shifted(evidence.series, model, k) for k in fine if abs(k) <= most and k not in scores}
         best = min(scores, key=lambda k: geometric_mean(scores[k]))
-        lag = best / rate
-        agree = np.mean(scores[best] < 0.5 * scores[min(scores, key=abs)])
-        if abs(lag) < LEAST or agree < AGREE:
+        if abs(best / rate) < LEAST:
             return
-        way = "later" if lag > 0 else "earlier"
-        yield Reading(
+        as_recorded = scores[min(scores, key=abs)]
+        halved, agreeing = scores[best] < 0.5 * as_recorded, _agreeing(scores, best)
+        explained = np.min(list(scores.values()), axis=0) < EXPLAINED
+        agreed = agreeing.mean() >= LEAST_JOINTS and agreeing.sum() >= AGREE * explained.sum()
+        if agreed or halved.mean() >= AGREE:
+            misfits = scores[best] * evidence.misfits / np.maximum(as_recorded, 1e-12)
+            yield self._reading(best, rate, misfits, agreeing if agreed else halved, agreed)
+
+    def _reading(self, best: int, rate: float, misfits: np.ndarray, which: np.ndarray, agreed: bool) -> Reading:
+        joints = "all" if which.all() else f"{which.sum()} of {which.size}"
+        return Reading(
             self.name,
             "tau",
-            float(
-                geometric_mean(scores[best])
-                * evidence.as_recorded
-                / max(geometric_mean(scores[min(scores, key=abs)]), 1e-12)
-            ),
-            f"the torques of {'all' if agree == 1 else 'most'} joints are stamped about {abs(lag):.3g} s {way} than the"
-            " motion that they belong to",
+            misfits,
+            f"the torques of {joints} joints are stamped about {abs(best) / rate:.3g} s"
+            f" {'later' if best > 0 else 'earlier'} than the motion that they belong to",
             f"shift the torque columns by {abs(best)} rows, so that torque and motion stand side by side",
+            agreed=bool(agreed),
         )
+
+
+def _agreeing(scores: dict[int, np.ndarray], best: int) -> np.ndarray:
+    """Joints that the model explains at this shift, better than as recorded, and whose own best shift is close to it.
+
+    Args:
+        scores: misfits of each joint at every shift in samples, shape (dof,) each.
+        best: the shift.
+    """
+    shifts = np.array(list(scores))
+    own = shifts[np.argmin(np.array(list(scores.values())), axis=0)]
+    near = np.abs(own - best) <= max(1.0, CLOSE * abs(best))
+    return near & (scores[best] < EXPLAINED) & (scores[best] < GAIN * scores[min(scores, key=abs)])
 
 
 def _shifted(series: tuple[Samples, ...], model: list[np.ndarray], shift: int) -> np.ndarray:
