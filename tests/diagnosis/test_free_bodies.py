@@ -7,7 +7,7 @@ import pytest
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.free_bodies import against_given
-from lagnet.diagnosis.verdict.compose import BESIDE_FREE_LINKS
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
 from lagnet.rigid_body.random_arm import random_arm
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("free_bodies")]
@@ -60,3 +60,5 @@ def test_errors_are_those_of_the_model_that_was_given(found) -> None:
 
 def test_the_verdict_says_beside_what_the_names_were_judged(found) -> None:
     assert BESIDE_FREE_LINKS in found.verdict.warnings
+    told = next(e.explanation for e in found.effects if e.effect == "coulomb_friction")
+    assert "named physics without the links that differ leaves" in told

@@ -29,16 +29,10 @@ from lagnet.diagnosis.verdict.verdict import (
     Unexplained,
     Verdict,
 )
-from lagnet.diagnosis.verdict.wording import SELDOM_MET, advice, clock_shift_words, explain
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS, SELDOM_MET, advice, clock_shift_words, explain
 from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 from lagnet.types import joint_types_of
-
-BESIDE_FREE_LINKS = (
-    "several links differ from the model: no few bodies that can exist explain this motion. Causes were judged beside "
-    "the inertial parameters of all links as these recordings determine them; these parameters stand in the identified "
-    "layer, and the error of the named layer is without them"
-)
 
 
 def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> Verdict:

@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.verdict_entry import identified_as_json
 from lagnet.diagnosis.verdict.verdict import JointFit, Verdict
-from lagnet.diagnosis.verdict.wording import whole_error_words
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS, whole_error_words
 from lagnet.models.corrected.model import CorrectedModel
 
 
@@ -27,7 +27,8 @@ def with_layers(
     """
     fits = tuple(_fit(fit, errors, j, corrected.remainder is not None) for j, fit in enumerate(verdict.fit))
     told = identified_as_json(found, corrected.regressor_source, corrected.joints)
-    effects = tuple(replace(e, explanation=e.explanation + whole_error_words(e, fits)) for e in verdict.effects)
+    beside = BESIDE_FREE_LINKS in verdict.warnings
+    effects = tuple(replace(e, explanation=e.explanation + whole_error_words(e, fits, beside)) for e in verdict.effects)
     return replace(verdict, fit=fits, effects=effects, identified=told)
 
 

@@ -15,6 +15,11 @@ WIDEST = 30.0  # half widths of an interval that holds zero, over the value: bey
 LEAST_VALUE = 0.1  # in any unit: a value near zero with a narrow interval is told, too
 ALIKE = 1.5  # times one error that another is at most, to be told as the same
 LEAST_PERCENT = 0.01  # that is written as a number
+BESIDE_FREE_LINKS = (
+    "several links differ from the model: no few bodies that can exist explain this motion. Causes were judged beside "
+    "the inertial parameters of all links as these recordings determine them; these parameters stand in the identified "
+    "layer, and the error of the named layer is without them"
+)
 SELDOM_MET = (
     " The held-out recordings hardly meet it:"
     " these are errors on parts of the fitted ones, each predicted from the others."
@@ -34,7 +39,8 @@ def explain(
     first += f"{percent(evidence.holdout_nmse_with)}."
     if tied:
         first += f" These recordings cannot tell it from {' or '.join(t.replace('_', ' ') for t in tied)}. "
-        first += f"What would: {'; '.join(dict.fromkeys(recording_against([law.name], [t]) for t in tied))}."
+        advised = (word for t in tied for word in recording_against([law.name], [t]).split("; "))
+        first += f"What would: {'; '.join(dict.fromkeys(advised))}."
     return first
 
 
@@ -81,12 +87,16 @@ def explain_transient(
     return first
 
 
-def whole_error_words(effect: EffectFound, fits: Sequence[JointFit]) -> str:
+def whole_error_words(effect: EffectFound, fits: Sequence[JointFit], beside_links: bool = False) -> str:
     """What the named physics leaves over all held-out samples, where the effect's own figures do not say it.
 
     The evidence on an effect leaves out samples at rest, and is a mean over the joints that an effect of the whole arm
     reaches; `nmse_named` counts all samples, at its joint or, of the whole arm, at the worst one.
+
+    Args:
+        beside_links: whether names were judged beside parameters of all links, which `nmse_named` is without.
     """
+    named = "named physics without the links that differ" if beside_links else "named physics"
     apart = effect.interval_s is not None or effect.explanation.endswith(
         SELDOM_MET
     )  # judged on other samples, and said
@@ -96,11 +106,11 @@ def whole_error_words(effect: EffectFound, fits: Sequence[JointFit]) -> str:
     worst = max(own, key=lambda fit: fit.nmse_named)
     left = percent(worst.nmse_named)
     if len(own) > 1:
-        return f" Over all held-out samples, named physics leaves most at {worst.joint}: {left}."
+        return f" Over all held-out samples, {named} leaves most at {worst.joint}: {left}."
     told = effect.evidence.holdout_nmse_with
     if left == percent(told) or told < ALIKE * worst.nmse_named < ALIKE**2 * told:
         return ""
-    return f" Over all held-out samples, rest included, named physics leaves {left} there."
+    return f" Over all held-out samples, rest included, {named} leaves {left} there."
 
 
 def percent(share: float) -> str:
