@@ -30,6 +30,11 @@ def test_a_spring_swings_as_a_cosine():
     assert np.abs(rolled(np.zeros_like(TIME), 1.0, kp=25.0) - np.cos(5.0 * TIME)).max() < SECOND_ORDER
 
 
+def test_a_joint_spring_swings_about_its_rest():
+    q = rolled(np.zeros_like(TIME), 1.0, kp=1e-6, spring=25.0, spring_rest=0.4)
+    assert np.abs(q - 0.4 - 0.6 * np.cos(5.0 * TIME)).max() < SECOND_ORDER
+
+
 def test_a_damped_spring_decays_by_its_closed_form():
     rate = np.sqrt(25.0 - 1.0)
     exact = np.exp(-TIME) * (np.cos(rate * TIME) + np.sin(rate * TIME) / rate)

@@ -31,8 +31,9 @@ LISTED: dict[str, tuple[str, float, float]] = {  # effect → parameter, least a
     "viscous_friction": ("Fv", 0.35, 0.7),
     "static_friction": ("Fs", 0.15, 0.3),
     "payload": ("m", 0.1, 0.25),
+    "joint_spring": ("k", 0.5, 1.0),
 }
-UNLISTED: dict[str, tuple[str, float, float]] = {"joint_spring": ("k", 0.5, 1.0), "torque_ripple": ("A", 0.1, 0.2)}
+UNLISTED: dict[str, tuple[str, float, float]] = {"torque_ripple": ("A", 0.1, 0.2)}
 LAW_KEY = {"gain_error": "kp", "coulomb_friction": "coulomb", "viscous_friction": "viscous"}
 LINK = """<body name="{name}" pos="0 0 {z}"><joint name="{name}" type="hinge" axis="0 1 0" range="-3 3"/>
 <inertial pos="0 0 -0.08" mass="{mass}" diaginertia="4e-4 4e-4 5e-5"/>{inner}</body>"""

@@ -28,6 +28,8 @@ from lagnet.servos.parameters import (
     OFFSET,
     QUADRATIC,
     ROTOR,
+    SPRING,
+    SPRING_REST,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -122,7 +124,7 @@ def _roll_window(p, series, first, last, floor, speed, step, out):  # pragma: no
             before = after
             away = q - (measured[n] + x * (measured[n + 1] - measured[n]))
             felt = load[n] + x * (load[n + 1] - load[n]) + (slope[n] + x * (slope[n + 1] - slope[n])) * away
-            felt *= p[LOAD_GAIN]
+            felt = p[LOAD_GAIN] * felt + p[SPRING] * (q - p[SPRING_REST])
             m = p[LOAD_GAIN] * (mass[n] + x * (mass[n + 1] - mass[n])) + p[ROTOR]
             error = u - q - p[BIAS]
             torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
@@ -132,7 +134,7 @@ def _roll_window(p, series, first, last, floor, speed, step, out):  # pragma: no
                 brake = p[BACK_EMF]
             else:
                 total = 0.0
-            new = next_speed(p, v, m, torque + p[OFFSET], stiff, damp, brake, felt, h)
+            new = next_speed(p, v, m, torque + p[OFFSET], stiff + p[SPRING], damp, brake, felt, h)
             q += 0.5 * h * (v + new)
             v = new
             if not abs(q) < FARTHEST:

@@ -29,6 +29,8 @@ from lagnet.servos.parameters import (
     OFFSET,
     QUADRATIC,
     ROTOR,
+    SPRING,
+    SPRING_REST,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -105,7 +107,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 after, cursor[j] = _integral(late, last, cursor[j], time, command, integral, j)
                 u = (after - before[j]) / h
                 before[j] = after
-                load[j] = p[LOAD_GAIN] * bias[j]
+                load[j] = p[LOAD_GAIN] * bias[j] + p[SPRING] * (q[j] - p[SPRING_REST])
                 torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
                 viscous = p[VISCOUS] + p[QUADRATIC] * abs(v[j])
                 if enabled[n, j] > 0.5:
@@ -116,6 +118,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                     brake = p[BACK_EMF]
                 else:
                     total[j] = 0.0
+                stiff += p[SPRING]
                 motor[j] = torque - brake * v[j]
                 damping = viscous + brake + damp
                 own = p[LOAD_GAIN] * mass[j, j] + p[ROTOR]

@@ -11,6 +11,7 @@ from lagnet.servos.effects.directional_load_friction import DirectionalLoadFrict
 from lagnet.servos.effects.duty_saturation import DutySaturation
 from lagnet.servos.effects.gain_error import GainError
 from lagnet.servos.effects.gear_friction import GearFriction
+from lagnet.servos.effects.joint_spring import JointSpring
 from lagnet.servos.effects.load_dependent_friction import LoadDependentFriction
 from lagnet.servos.effects.load_error import LoadError
 from lagnet.servos.effects.position_bias import PositionBias
@@ -40,6 +41,7 @@ _EFFECTS: tuple[ServoEffect, ...] = (
     DutySaturation(),
     TorqueOffset(),
     LoadError(),
+    JointSpring(),
 )
 SERVO_CATALOGUE: dict[str, ServoEffect] = {effect.name: effect for effect in _EFFECTS}
 

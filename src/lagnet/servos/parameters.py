@@ -2,7 +2,7 @@
 
 e   = dead_band(u(t − T) − q − δ; b)                     command error behind delay, bias and dead band
 τ_m = clip(r (kp e + ki ∫e dt − kd v), ±r τ_max) − kb v  controller; r = voltage over nominal voltage, 1 if unknown
-(M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − friction     joint; load holds gravity and the other joints
+(M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − k (q − q0) − friction     joint; load holds gravity and the other joints
 friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K_m |τ_m| + K₂ load²] sign(v) + Fv v + Fd v |v|;
 at rest the bracket bounds it
 """
@@ -54,6 +54,8 @@ LAW = (
     LawParameter("back_emf", "N m s/rad", "damping by the motor's own voltage while enabled", 0.0, 0.0, 1e5),
     LawParameter("gap", "rad", "half-width of the play between motor and link", 0.0, 0.0, 0.5),
     LawParameter("load_motor", "", "friction per torque of the motor", 0.0, 0.0, 0.9),
+    LawParameter("spring", "N m/rad", "stiffness of a spring between link and base of the joint", 0.0, 0.0, 1e6),
+    LawParameter("spring_rest", "rad", "position at which that spring is relaxed", 0.0, -10.0, 10.0),
 )
 NAMES = tuple(p.name for p in LAW)
 INDEX = {name: i for i, name in enumerate(NAMES)}
@@ -72,7 +74,9 @@ NEUTRAL = np.array([p.neutral for p in LAW])
     BACK_EMF,
     GAP,
     LOAD_MOTOR,
-) = range(11, 23)
+    SPRING,
+    SPRING_REST,
+) = range(11, 25)
 
 
 def law_vector(**values: float) -> np.ndarray:

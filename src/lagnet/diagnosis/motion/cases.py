@@ -137,6 +137,7 @@ def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
         "coulomb",
         "static",
         "offset",
+        "spring",
         "load_gain",
     ):
         out[INDEX[name]] *= factor if name != "load_gain" else 1.0

@@ -12,6 +12,8 @@ from lagnet._version import __version__
 from lagnet.diagnosis.motion.cases import encoder_step
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.localisation import locate_error, predictors
+from lagnet.diagnosis.motion.payload import PayloadFound
+from lagnet.diagnosis.motion.payload_entry import payload_abstention, payload_effect
 from lagnet.diagnosis.motion.problem import motion_rates
 from lagnet.diagnosis.motion.rivals import Comparison
 from lagnet.diagnosis.motion.verdict import MotionVerdict, PositionErrors
@@ -44,6 +46,7 @@ def compose_motion_verdict(
     held: Sequence[Recording],
     rollouts: Rollouts,
     seed: int,
+    payload: PayloadFound | None = None,
 ) -> MotionVerdict:
     """All parts of the verdict; rollouts are nominal, corrected and named, one of each held-out trajectory."""
     parts = [part for recording in held for part in recording.parts()]
@@ -58,6 +61,7 @@ def compose_motion_verdict(
     errors = tuple(PositionErrors(of[0][j], of[1][j], of[2][j], float(sizes[j])) for j in range(len(joints)))
     variance = np.maximum(np.var(measured, axis=0), floors**2)
     effects = [e for j, d in enumerate(found) if d is not None for e in _effects(joints[j], d, servo, j)]
+    effects += [] if payload is None else [payload_effect(payload)]
     verdict = Verdict(
         lagnet_version=__version__,
         seed=seed,
@@ -164,7 +168,7 @@ def _effect(name: str, found: JointDiagnosis, comparison: Comparison, total: flo
 def _abstentions(
     joints: Sequence[str], found: Sequence[JointDiagnosis | None], servo: NominalServo
 ) -> tuple[Abstained, ...]:
-    out = []
+    out = list(payload_abstention(servo))
     for joint, diagnosis in zip(joints, found, strict=True):
         if diagnosis is None:
             reason, advice = "the joint does not move", f"record a motion of {joint}"
@@ -209,6 +213,7 @@ def _rejected(joints: Sequence[str], found: Sequence[JointDiagnosis | None]) -> 
                 "not_significant": "the gain on motion that was not fitted is within its scatter",
                 "below_resolution": "it changes the predicted motion by less than half a step of the encoder [rad]",
                 "remainder": "with all that was selected most of the error remains: its cause is another [rad]",
+                "explained_by_payload": "a payload at the last link predicts held-out motion as well, as one effect",
                 "near_nominal": "its parameters are those of the nominal servo but for a few percent",
             }[r.rule]
             entry = {"effect": r.effect, "joint": joint, "rule": r.rule, "value": r.value, "limit": r.limit}

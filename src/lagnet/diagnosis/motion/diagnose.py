@@ -12,6 +12,7 @@ from lagnet.diagnosis.motion.cases import joint_case
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis, diagnose_joint
+from lagnet.diagnosis.motion.payload import judge_payload
 from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
@@ -93,24 +94,36 @@ def diagnose_motion(
     bodies, servo = _nominal(robot, servo)
     tree = kinematic_tree(bodies)
     problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on))
-    joints = _diagnose_joints(problem, len(fit_on), servo, limits or SelectionLimits())
+    limits = limits or SelectionLimits()
+    joints = _diagnose_joints(problem, len(fit_on), servo, limits)
+    apart = {i: d for i, d in enumerate(joints) if d is not None}
+    payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
+    joints = tuple(beside.get(i) for i in range(len(joints)))
+    loaded = bodies if payload is None else with_body(bodies, payload.body)
     scales = tuple(j is not None and j.case.scale_is_set for j in joints)
     supply = median_voltage(fit_on)
     pairs = [(servo.laws[i], servo.laws[i]) if j is None else (j.nominal, j.law) for i, j in enumerate(joints)]
     laws = [_as_given(servo, i, nominal) for i, (nominal, _) in enumerate(pairs)]
     nominal = ServoDrivenModel(bodies, np.array(laws), scales, supply)
-    corrected = ServoDrivenModel(bodies, np.array([law for _, law in pairs]), scales, supply)
+    corrected = ServoDrivenModel(loaded, np.array([law for _, law in pairs]), scales, supply)
     factors = factors or [1.0] * (len(fit_on) + len(held))
     before, after = (
         tuple(_roll(model, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
         for model in (nominal, corrected)
     )
     named = ServoDrivenModel(
-        bodies, np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)]), scales, supply
+        loaded, np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)]), scales, supply
     )
     with_names = tuple(_roll(named, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
-    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed)
+    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload)
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
+
+
+def with_body(robot: Any, body: np.ndarray) -> Any:
+    """The robot with ten inertial parameters added to its last link, shape (10,)."""
+    parameters = robot.inertial_parameters()
+    parameters[-1] += body
+    return robot.with_inertial_parameters(parameters)
 
 
 def _as_given(servo: NominalServo, joint: int, estimated: np.ndarray) -> np.ndarray:

@@ -75,4 +75,9 @@ def sizes_of(scales: Scales) -> dict[str, float]:
     sizes |= {"rotor": 0.3 * scales.inertia + 1e-4 * scales.kp, "quadratic": 0.1 * torque / speed**2}
     shares = ("load_driving", "load_driven", "load_motor", "load_gain")
     sizes |= dict.fromkeys(shares, 0.2) | {"load_squared": 0.1 / max(torque, 1e-9)}
-    return sizes | {"stribeck_speed": 0.2 * speed, "torque_limit": torque}
+    return sizes | {
+        "spring": 0.1 * scales.kp,
+        "spring_rest": 0.2,
+        "stribeck_speed": 0.2 * speed,
+        "torque_limit": torque,
+    }

@@ -15,7 +15,19 @@ from lagnet.errors import ModelError
 from lagnet.models.corrected.folder import MOST_BYTES, write_description
 from lagnet.rigid_body.kinematic_tree import KinematicTree, kinematic_tree
 from lagnet.rollout.whole_arm import roll_out_arm
-from lagnet.servos.parameters import COULOMB, INDEX, LAW, NAMES, NO_LIMIT, OFFSET, QUADRATIC, ROTOR, VISCOUS
+from lagnet.servos.parameters import (
+    COULOMB,
+    INDEX,
+    LAW,
+    NAMES,
+    NO_LIMIT,
+    OFFSET,
+    QUADRATIC,
+    ROTOR,
+    SPRING,
+    SPRING_REST,
+    VISCOUS,
+)
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
 FORMAT = 1
@@ -104,7 +116,7 @@ class ServoDrivenModel:
         return self._of_bodies(q, v, a) + self.residual_torque(q, v, a)
 
     def residual_torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
-        """What is no part of the bodies: friction and offsets, shape (n, dof)."""
+        """What is no part of the bodies: friction, springs and offsets, shape (n, dof)."""
         v, laws = np.asarray(v, dtype=float), self.laws
         load, side = self.nominal.gravity_torque(q), np.tanh(v / SLOW)
         per_load = np.where(side * load > 0.0, laws[:, INDEX["load_driving"]], laws[:, INDEX["load_driven"]])
@@ -113,7 +125,8 @@ class ServoDrivenModel:
         dry = dry + per_load * np.abs(load) + laws[:, INDEX["load_squared"]] * load**2
         per_motor = laws[:, INDEX["load_motor"]]  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
         dry = (dry + per_motor * np.abs(load)) / (1.0 - per_motor * np.sign(side * load))
-        return dry * side + (laws[:, VISCOUS] + laws[:, QUADRATIC] * np.abs(v)) * v - laws[:, OFFSET]
+        spring = laws[:, SPRING] * (np.asarray(q, dtype=float) - laws[:, SPRING_REST])
+        return dry * side + spring + (laws[:, VISCOUS] + laws[:, QUADRATIC] * np.abs(v)) * v - laws[:, OFFSET]
 
     def _of_bodies(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         more = self.laws[:, ROTOR] - self.nominal.armature

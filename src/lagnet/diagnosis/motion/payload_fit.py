@@ -1,0 +1,148 @@
+"""argmin over a point mass at the last link of the motion of all joints, their laws held.
+
+    M_ii + ΔM_ii, load_i + Δload_i,  Δ = Y_last(q, v, a) π,  π = (m, h, (|h|² 1 − h hᵀ)/m),  h = m c
+
+A point mass is a body for every m > 0. Levenberg–Marquardt in (m, h), in which loads are linear but for π's last six.
+Source: Atkeson 1986 (estimation of inertial parameters of loads).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.fitting import DAMPING, HUBER, PRIOR, huber, robust_scale
+from lagnet.diagnosis.motion.joint_case import JointCase
+from lagnet.diagnosis.motion.problem import SLOPES, MotionProblem, motion_rates
+from lagnet.rigid_body.inertia import parameters_of_body
+from lagnet.rollout.measured_load import measured_load
+from lagnet.rollout.one_joint import JointSeries
+
+FARTHEST = 1.0  # [m] |c| of a payload
+LEAST_MASS = 1e-4  # [kg]
+DIFFERENCE = 5e-3  # step of a finite difference, in sizes of (m, h)
+CONVERGED = 1e-3  # relative gain of the cost
+ROUNDS = 2  # fits, each with the robust scale of the one before
+
+Errors = Callable[[np.ndarray], list[np.ndarray]]  # (m, h) → predicted less measured positions of each joint [rad]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyLoads:
+    """M_ii, load and slope of a last link of unit parameters and no other body, each of shape (10, n, dof)."""
+
+    mass: np.ndarray
+    load: np.ndarray
+    slope: np.ndarray
+
+    def added(self, series: JointSeries, joint: int, point: np.ndarray) -> JointSeries:
+        """The series of a joint with a point mass (m, h), shape (4,), at the last link."""
+        body = body_of(point)
+        mass, load, slope = (body @ part[:, :, joint] for part in (self.mass, self.load, self.slope))
+        return replace(series, mass=series.mass + mass, load=series.load + load, load_slope=series.load_slope + slope)
+
+
+def body_of(point: np.ndarray) -> np.ndarray:
+    """The ten inertial parameters of a point mass (m, h), shape (10,)."""
+    return parameters_of_body(float(point[0]), point[1:] / point[0], np.zeros((3, 3)))
+
+
+def body_loads(problem: MotionProblem) -> BodyLoads:
+    """∂/∂π of the load of the last link's body along the measured motion."""
+    time, q = problem.series[0].time, np.column_stack([s.q for s in problem.series])
+    dof = q.shape[1]
+    out = np.zeros((3, 10, *q.shape))
+    for run in problem.runs:
+        rows = slice(run.first, run.last + 1)
+        v, a = motion_rates(time[rows], q[rows])
+        stride = max(1, int(SLOPES / float(np.median(np.diff(time[rows])))))
+        for k in range(10):
+            bodies = np.zeros((dof, 10))
+            bodies[-1, k] = 1.0
+            out[:, k, rows] = measured_load(replace(problem.tree, bodies=bodies), q[rows], v, a, stride)
+    return BodyLoads(*out)
+
+
+def sizes_of_point(problem: MotionProblem) -> np.ndarray:
+    """Typical (m, h): the mass of the last link or a twentieth of the arm's, at a typical distance of joints."""
+    masses = problem.tree.bodies[:, 0]
+    mass = max(float(masses[-1]), 0.05 * float(masses.sum()), LEAST_MASS)
+    reach = max(0.05, float(np.mean(np.linalg.norm(problem.tree.translations, axis=1))))
+    return np.array([mass, *np.full(3, mass * reach)])
+
+
+def starts_of_point(problem: MotionProblem, sizes: np.ndarray) -> list[np.ndarray]:
+    """Masses from a tenth of a typical one to three times it, where the last link's centre is and at its joint."""
+    body = problem.tree.bodies[-1]
+    centre = body[1:4] / body[0] if body[0] > 0.0 else np.zeros(3)
+    places = [centre, centre + 0.3 * sizes[1] / sizes[0]]
+    return [np.array([1.0, *c]) * m for m in sizes[0] * np.array([0.1, 0.3, 1.0, 3.0]) for c in places]
+
+
+def possible(point: np.ndarray) -> np.ndarray:
+    """The nearest (m, h) with m > 0 and |c| within `FARTHEST`."""
+    mass = max(float(point[0]), LEAST_MASS)
+    length = float(np.linalg.norm(point[1:]))
+    return np.array([mass, *(point[1:] * min(1.0, FARTHEST * mass / max(length, 1e-300)))])
+
+
+def joint_errors(cases: dict[int, JointCase], loads: BodyLoads) -> Errors:
+    """Errors of each joint's rollouts by its nominal law while the others move as measured."""
+
+    def errors(point: np.ndarray) -> list[np.ndarray]:
+        loaded = ((c, replace(c.fit, series=loads.added(c.fit.series, j, point))) for j, c in cases.items())
+        return [data.errors(case.law) for case, data in loaded]
+
+    return errors
+
+
+def cost_of(errors: list[np.ndarray], scales: np.ndarray) -> float:
+    """Sum over joints of the mean Huber loss; infinite for a rollout that diverged."""
+    found = sum(float(np.mean(huber(e, s))) for e, s in zip(errors, scales, strict=True))
+    return found if np.isfinite(found) else np.inf
+
+
+def sensitivities_of(errors: Errors, point: np.ndarray, sizes: np.ndarray) -> list[np.ndarray]:
+    """∂q̂/∂(m, h) of each joint in units of the sizes, each of shape (n, 4)."""
+    here, moved = errors(point), [errors(point + DIFFERENCE * sizes * row) for row in np.eye(4)]
+    return [np.column_stack([(m[i] - e) / DIFFERENCE for m in moved]) for i, e in enumerate(here)]
+
+
+def fit_point_mass(
+    errors: Errors, start: np.ndarray, sizes: np.ndarray, floors: np.ndarray, iterations: int = 20
+) -> np.ndarray:
+    """(m, h) of the least cost from a start, shape (4,).
+
+    Args:
+        errors: of the joints as a function of (m, h).
+        start, sizes: shape (4,), of (m, h) [kg, kg m].
+        floors: shape (joints,), resolution of the errors [rad].
+        iterations: at most, in each of `ROUNDS`.
+    """
+    point = possible(start)
+    for _ in range(ROUNDS):
+        scales = np.array([robust_scale(e, f) for e, f in zip(errors(point), floors, strict=True)])
+        point = _fitted(errors, point, sizes, scales, iterations)
+    return point
+
+
+def _fitted(errors: Errors, point: np.ndarray, sizes: np.ndarray, scales: np.ndarray, iterations: int) -> np.ndarray:
+    first, cost = point / sizes, cost_of(errors(point), scales)
+    for _ in range(iterations):
+        normal, gradient = PRIOR * np.eye(4), PRIOR * (point / sizes - first)
+        for e, jacobian, s in zip(errors(point), sensitivities_of(errors, point, sizes), scales, strict=True):
+            weight = 1.0 / np.maximum(1.0, np.abs(e) / (HUBER * s)) / s**2 / len(e)
+            normal = normal + (jacobian * weight[:, None]).T @ jacobian
+            gradient = gradient + jacobian.T @ (weight * e)
+        steps = [-np.linalg.solve(normal + d * np.diag(np.diag(normal)), gradient) for d in DAMPING]
+        tried = [possible(point + step * sizes) for step in steps]
+        costs = [cost_of(errors(p), scales) for p in tried]
+        best = int(np.argmin(costs))
+        gain = cost - costs[best]
+        if gain > 0.0:
+            cost, point = costs[best], tried[best]
+        if not gain > CONVERGED * cost:
+            break
+    return point
