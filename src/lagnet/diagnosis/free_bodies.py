@@ -15,15 +15,18 @@ import numpy as np
 
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.model import torque_along
+from lagnet.models.corrected.identified import IdentifiedLayer
+from lagnet.models.corrected.model import CorrectedModel, torque_along
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, RobotModel, is_robot_model
 
 FAR = 4.0  # times the mean square residual of free parameters, beyond which real bodies leave more than chance
+LITTLE = 0.1  # of the nominal mean square residual that free links may leave at a joint: beyond, they are not the cause
 MOST = 0.3  # of the nominal mean square residual that they may leave at a joint
 
 
@@ -53,16 +56,19 @@ def gains_among(effects: Sequence[NamedEffect]) -> int:
     return sum(e.effect == "torque_gain" for e in effects)
 
 
-def beside_free_bodies(problem: Problem) -> Problem | None:
-    """The problem with the links as the fitted recordings determine them; None where no real links do better.
+def beside_free_bodies(problem: Problem, noise: np.ndarray) -> Problem | None:
+    """The problem with the links as the fitted recordings determine them; None where no real links explain these.
+
+    Links that differ from one recording to the next, as under a load that is mounted anew, explain none of them.
 
     Args:
         problem: recordings and nominal model as given.
+        noise: shape (dof,), noise floor [N m].
     """
     if not is_robot_model(problem.nominal):
         return None
     found = identify(problem, ())
-    if found is None or found.layer.bodies is None:
+    if found is None or found.layer.bodies is None or not explains(problem, problem.fit, (), found.layer, noise):
         return None
     robot: RobotModel = problem.nominal
     parameters = robot.inertial_parameters() + found.layer.bodies
@@ -70,6 +76,28 @@ def beside_free_bodies(problem: Problem) -> Problem | None:
         return None
     posed = with_nominal(problem, robot.with_inertial_parameters(parameters))
     return replace(posed, given=problem.nominal)
+
+
+def explains(
+    problem: Problem,
+    pieces: Sequence[Segment],
+    effects: Sequence[NamedEffect],
+    layer: IdentifiedLayer,
+    noise: np.ndarray,
+) -> bool:
+    """Whether effects and an identified layer leave each joint mean r² within twice the noise or 0.1 of the nominal."""
+    model = CorrectedModel(
+        problem.nominal, tuple(effects), problem.slow, problem.held, problem.straight, identified=layer
+    )
+    rest = [
+        problem.reduce(p, p.tau - replace(model, recording=p.origin).torque_along(p.time, p.q, p.v, p.a))
+        for p in pieces
+    ]
+    nominal, valid = stacked(problem, pieces)
+    count = np.maximum(1, valid.sum(axis=0))
+    before, after = (np.sum((r * valid) ** 2, axis=0) / count for r in (nominal, np.concatenate(rest)))
+    floor = noise**2
+    return bool(np.all((after <= FAR * floor) | (after - floor <= LITTLE * (before - floor))))
 
 
 def with_nominal(problem: Problem, nominal: InverseDynamics) -> Problem:

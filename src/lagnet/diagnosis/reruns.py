@@ -14,12 +14,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, with_nominal
+from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, explains, with_nominal
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, lasting, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed, thinned
-from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.differing_recordings import differing_recordings, lasting_loads, without_loads
@@ -47,7 +46,7 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     """
     if first.problem.given is not None or not is_puzzled(first) or not is_identified(first):
         return first
-    free = beside_free_bodies(first.problem)
+    free = beside_free_bodies(first.problem, first.noise)
     if free is None:
         return first
     second = again(free)
@@ -84,18 +83,7 @@ def is_identified(state: DiagnosisState) -> bool:
     found = identify(lasting(state.problem, state.events), state.effects)
     if found is None:
         return False
-    problem = state.problem
-    model = replace(state.corrected, identified=found.layer)
-    rest = [
-        problem.reduce(p, p.tau - replace(model, recording=p.origin).torque_along(p.time, p.q, p.v, p.a))
-        for p in problem.holdout
-    ]
-    nominal, valid = stacked(problem, problem.holdout)
-    before, after = (
-        np.sum((r * valid) ** 2, axis=0) / np.maximum(1, valid.sum(axis=0)) for r in (nominal, np.concatenate(rest))
-    )
-    floor = state.noise**2
-    return bool(np.all((after <= CLEARLY**2 * floor) | (after - floor <= PUZZLING * (before - floor))))
+    return explains(state.problem, state.problem.holdout, state.effects, found.layer, state.noise)
 
 
 def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[DiagnosisState]:
