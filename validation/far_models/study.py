@@ -89,14 +89,15 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
-    plants = []
+    plants: list[dict[str, Any]] = []
+    out = given.out or (None if given.quick else HERE / "result.json")
     for seed in range(given.first, given.first + (QUICK if given.quick else given.plants)):
         plants.append({"plant": seed, **study(draw(seed))})
         print({k: plants[-1][k] for k in ("plant", "kind", "friction", "worse", "wrong_names", "seconds")}, flush=True)
+        if out:  # after each, so that a run that is cut keeps what it has
+            text = json.dumps({"summary": summary(plants), "plants": plants}, indent=1)
+            out.write_text(text + "\n", encoding="utf-8")
     figures = summary(plants)
-    out = given.out or (None if given.quick else HERE / "result.json")
-    if out:
-        out.write_text(json.dumps({"summary": figures, "plants": plants}, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(figures, indent=1))
     return int(figures["joints_worse_than_least_squares"] > 0)
 
