@@ -52,6 +52,7 @@ def point_intervals(
     half = NORMAL_95 * np.sqrt(np.maximum(variance, 0.0))
     half = half + sum(np.abs(weighted @ spread.T).sum(axis=0) * step for weighted, step in systematic)
     half = half + np.abs(to_values @ vectors[:, ~seen]).sum(axis=1) * FARTHEST * m / sizes[1]
-    values = dict(zip(NAMES, map(float, [m, *c]), strict=True))
+    values: dict[str, float] = dict(zip(NAMES, map(float, [m, *c]), strict=True))
     out = {n: (values[n] - float(w), values[n] + float(w)) for n, w in zip(NAMES, half, strict=True)}
-    return values, out | {"m": (max(0.0, out["m"][0]), out["m"][1])}
+    out["m"] = (max(0.0, out["m"][0]), out["m"][1])
+    return values, {str(name): ends for name, ends in out.items()}
