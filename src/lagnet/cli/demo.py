@@ -17,7 +17,7 @@ def command(
 ) -> None:
     """Hide an effect in a simulated arm, diagnose it, open the envelope and compare."""
     from lagnet.cli.console import say
-    from lagnet.cli.envelope import compare, seal
+    from lagnet.cli.envelope import say_opened, seal
     from lagnet.cli.motion import check_route
     from lagnet.cli.motion_demo import demonstrate_on_motion
     from lagnet.diagnosis.diagnose import diagnose
@@ -48,9 +48,4 @@ def command(
     result = diagnose(read[:-1], robot, read[-1:], seed=seed)
     write_diagnosis(result, out)
     page = write_report(result.verdict.to_dict(), result.evidence, out / "report.html")
-    for effect in result.effects:
-        say(f"   {effect.explanation}")
-    say("3. The envelope is opened")
-    for line in compare(out, result.verdict.to_dict()):
-        say(f"   {line}")
-    say(f"report: {page.resolve()}")
+    say_opened(out, result.verdict.to_dict(), page)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from lagnet.cli.console import say
 from lagnet.files import write_whole
 
 FILE = "envelope.json"
@@ -37,3 +38,13 @@ def compare(folder: Path, verdict: Mapping[str, Any]) -> Iterator[str]:
         yield f"hidden {effect['effect']} at {place}: found; {told}"
     for name, joint in named:
         yield f"also named, though not hidden: {name} at {joint or 'the whole arm'}"
+
+
+def say_opened(folder: Path, verdict: Mapping[str, Any], page: Path) -> None:
+    """Says what was found, opens the envelope and says what was hidden; `page` is the report."""
+    for effect in verdict["effects"]:
+        say(f"   {effect['explanation']}")
+    say("3. The envelope is opened")
+    for line in compare(folder, verdict):
+        say(f"   {line}")
+    say(f"report: {page.resolve()}")

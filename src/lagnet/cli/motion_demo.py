@@ -14,7 +14,7 @@ def demonstrate_on_motion(out: Path, seed: int) -> None:
         MissingExtraError: PyBullet is not installed.
     """
     from lagnet.cli.console import say
-    from lagnet.cli.envelope import compare, seal
+    from lagnet.cli.envelope import say_opened, seal
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
     from lagnet.diagnosis.motion.writing import write_motion_diagnosis
     from lagnet.recordings.loading.load import load_recording
@@ -41,9 +41,4 @@ def demonstrate_on_motion(out: Path, seed: int) -> None:
     result = diagnose_motion(read[:-1], robot, read[-1:], servo=servo, seed=seed)
     write_motion_diagnosis(result, out)
     write_motion_report(result, out / "report.html")
-    for effect in result.effects:
-        say(f"   {effect.explanation}")
-    say("3. The envelope is opened")
-    for line in compare(out, result.verdict.to_dict()):
-        say(f"   {line}")
-    say(f"report: {(out / 'report.html').resolve()}")
+    say_opened(out, result.verdict.to_dict(), out / "report.html")

@@ -17,6 +17,8 @@ import numpy as np
 from lagnet.effects.effect import Parameter
 from lagnet.servos.parameters import INDEX
 
+LEAST_WAY = 0.02  # share of the moving samples in the direction that is taken less
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -73,4 +75,17 @@ class ServoEffect(ABC):
         """None if a joint's recorded motion can show the effect, else why it cannot; arrays of shape (n,)."""
         if not moving.any():
             return "the joint does not move"
+        return None
+
+
+class ReversingEffect(ServoEffect):
+    """An effect that changes its side with the direction of motion: motion in one direction alone cannot show it."""
+
+    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
+        """None if the joint moves in both directions, else why the effect cannot be shown; arrays of shape (n,)."""
+        if reason := super().excitation(command, q, moving):
+            return reason
+        step = np.diff(q)[moving[1:]]
+        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < LEAST_WAY * step.size:
+            return "the joint moves in one direction alone"
         return None

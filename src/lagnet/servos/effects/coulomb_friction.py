@@ -7,11 +7,11 @@ from typing import ClassVar, final
 import numpy as np
 
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class CoulombFriction(ServoEffect):
+class CoulombFriction(ReversingEffect):
     """Dry friction of one size: |τ| ≤ Fc at rest, Fc sign(v) in motion."""
 
     name = "coulomb_friction"
@@ -25,11 +25,3 @@ class CoulombFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.2 * scales.torque,),)
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, final
 
-import numpy as np
-
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class DeadBand(ServoEffect):
+class DeadBand(ReversingEffect):
     """No torque while the command error is small: |e| < b."""
 
     name = "dead_band"
@@ -25,11 +23,3 @@ class DeadBand(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.2 * scales.error,),)
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

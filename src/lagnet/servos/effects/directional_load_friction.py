@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, final
 
-import numpy as np
-
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class DirectionalLoadFriction(ServoEffect):
+class DirectionalLoadFriction(ReversingEffect):
     """Dry friction per load that differs by whether the motor moves the load or the load drives the motor."""
 
     name = "directional_load_friction"
@@ -29,11 +27,3 @@ class DirectionalLoadFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.5, 0.2), (0.2, 0.8))
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, final
 
-import numpy as np
-
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class GearFriction(ServoEffect):
+class GearFriction(ReversingEffect):
     """Dry friction in proportion to the torque at both sides of a gear: K (|τ_motor| + |τ_load|) sign(v)."""
 
     name = "gear_friction"
@@ -31,11 +29,3 @@ class GearFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.1,), (0.4,))
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

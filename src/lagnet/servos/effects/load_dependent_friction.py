@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, final
 
-import numpy as np
-
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class LoadDependentFriction(ServoEffect):
+class LoadDependentFriction(ReversingEffect):
     """Dry friction in proportion to the load, alike in both directions of power: K |load| sign(v)."""
 
     name = "load_dependent_friction"
@@ -25,11 +23,3 @@ class LoadDependentFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.2,), (0.8,))
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

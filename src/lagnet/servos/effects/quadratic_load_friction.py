@@ -7,11 +7,11 @@ from typing import ClassVar, final
 import numpy as np
 
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class QuadraticLoadFriction(ServoEffect):
+class QuadraticLoadFriction(ReversingEffect):
     """Dry friction with the square of the load: K₂ load² sign(v)."""
 
     name = "quadratic_load_friction"
@@ -25,11 +25,3 @@ class QuadraticLoadFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.2 / max(scales.torque, 1e-9),),)
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None

@@ -7,11 +7,11 @@ from typing import ClassVar, final
 import numpy as np
 
 from lagnet.effects.effect import Parameter
-from lagnet.servos.effect import Scales, ServoEffect
+from lagnet.servos.effect import ReversingEffect, Scales
 
 
 @final
-class StribeckFriction(ServoEffect):
+class StribeckFriction(ReversingEffect):
     """Dry friction that falls with speed: (Fc + Fs exp(−(v/vs)²)) sign(v)."""
 
     name = "stribeck_friction"
@@ -30,11 +30,3 @@ class StribeckFriction(ServoEffect):
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
         return ((0.1 * scales.torque, 0.1 * scales.torque, 0.3 * scales.speed),)
-
-    def excitation(self, command: np.ndarray, q: np.ndarray, moving: np.ndarray) -> str | None:
-        if not moving.any():
-            return "the joint does not move"
-        step = np.diff(q)[moving[1:]]
-        if min(np.sum(step > 0.0), np.sum(step < 0.0)) < 0.02 * step.size:
-            return "the joint moves in one direction alone"
-        return None
