@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.settings import DecisionLimits
 from lagnet.effects.motion import Motion
 from lagnet.errors import DiagnosisError
@@ -18,7 +19,6 @@ from lagnet.recordings.conditioning.smoothing import SETTLING, low_pass
 from lagnet.types import InverseDynamics
 
 OVERSAMPLING = 2.5  # reduced samples per second over the bandwidth: Nyquist with room for the filter's slope
-FULL_RATE = 40.0  # samples per second over the bandwidth, beyond which laws gain nothing from more of them
 LONGEST = 20_000  # samples of a piece: bounds the memory of a regressor
 REST = 0.6  # a joint rests where it stays slow for this many periods of the bandwidth
 SUMMARY = 6_000  # samples of the summary motion
@@ -160,22 +160,6 @@ def pose_problem(
     power = sum(np.sum(problem_torque**2, axis=0) for problem_torque in _centred_torque(posed))
     count = sum(p.keep.size for p in posed.fit)
     return replace(posed, scale=np.sqrt(power / count))
-
-
-def thinned(conditioned: Conditioned) -> Conditioned:
-    """Samples at forty times the bandwidth where there are more; torques are low-passed before, against aliasing."""
-    every = int(conditioned.rate / (FULL_RATE * conditioned.bandwidth))
-    if every < 2:
-        return conditioned
-    rate = conditioned.rate / every
-    rows = slice(None, None, every)
-
-    def part(s: Stretch) -> Stretch:
-        tau = low_pass(s.tau, conditioned.rate, 0.4 * rate)
-        drive = {name: x[rows] for name, x in s.drive.items()}
-        return replace(s, time=s.time[rows], q=s.q[rows], v=s.v[rows], a=s.a[rows], tau=tau[rows], drive=drive)
-
-    return replace(conditioned, rate=rate, stretches=tuple(map(part, conditioned.stretches)))
 
 
 def _centred_torque(problem: Problem) -> list[np.ndarray]:

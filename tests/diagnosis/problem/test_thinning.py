@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from lagnet.diagnosis.problem.problem import FULL_RATE, Problem, pose_problem, thinned
+from lagnet.diagnosis.problem.problem import Problem, pose_problem
+from lagnet.diagnosis.problem.thinning import FULL_RATE, thinned
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 
@@ -28,7 +29,7 @@ def _faster(recording: Recording) -> Recording:
 
 
 def _posed(arm, recordings, monkeypatch, limit: float) -> Problem:
-    monkeypatch.setattr("lagnet.diagnosis.problem.problem.FULL_RATE", limit)
+    monkeypatch.setattr("lagnet.diagnosis.problem.thinning.FULL_RATE", limit)
     parts = [condition([r], BANDWIDTH) for r in recordings]
     return pose_problem(arm, *parts)
 
