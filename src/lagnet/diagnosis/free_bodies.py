@@ -102,6 +102,8 @@ def explains(
 
 def with_nominal(problem: Problem, nominal: InverseDynamics) -> Problem:
     """The same recordings held against another nominal model."""
+    if nominal is problem.nominal:
+        return problem
 
     def posed(piece: Segment) -> Segment:
         return replace(piece, load=torque_along(nominal, piece.time, piece.q, piece.v, piece.a))

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.holdout_torque import HoldoutTorque, holdout_errors, holdout_torques
-from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.remainder import learn_remainder
-from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
@@ -35,7 +34,7 @@ class Correction:
 
 def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[int | None]) -> Correction:
     """Estimates the layers beyond the named one, on fitted recordings alone, and judges all on held-out ones."""
-    found = identify(lasting(state.problem, state.events), state.effects)
+    found = state.identified
     model = state.corrected if found is None else replace(state.corrected, identified=found.layer)
     learned = None if found is None else learn_remainder(state.problem, model, state.seed)
     model = replace(model, remainder=learned)

@@ -15,10 +15,10 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, explains, with_nominal
-from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
-from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, lasting, set_aside, too_much
-from lagnet.diagnosis.problem.problem import Problem, blurred_speed, thinned
+from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
+from lagnet.diagnosis.problem.problem import Problem, blurred_speed
+from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.differing_recordings import differing_recordings, lasting_loads, without_loads
@@ -80,7 +80,7 @@ def is_puzzled(state: DiagnosisState) -> bool:
 
 def is_identified(state: DiagnosisState) -> bool:
     """Whether bodies and functions of motion without a name explain what is left: then nothing drowns what holds."""
-    found = identify(lasting(state.problem, state.events), state.effects)
+    found = state.identified
     if found is None:
         return False
     return explains(state.problem, state.problem.holdout, state.effects, found.layer, state.noise)
@@ -104,7 +104,7 @@ def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventI
     Event intervals that have no name in any run are not valid in all of them.
     """
     clean = set_aside(judge.problem, events)
-    clean = clean if clean.nominal is state.problem.nominal else with_nominal(clean, state.problem.nominal)
+    clean = with_nominal(clean, state.problem.nominal)
     problem = replace(clean, slow=state.problem.slow, straight=state.problem.straight, held=state.problem.held)
     rest, counts = [], []
     for piece in problem.holdout:

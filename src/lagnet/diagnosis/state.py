@@ -10,7 +10,8 @@ import numpy as np
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.identifiability.ambiguity import AmbiguousCause
 from lagnet.diagnosis.identifiability.rivals import Comparison
-from lagnet.diagnosis.problem.intervals import EventInterval, set_aside
+from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.problem.intervals import EventInterval, lasting, set_aside
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.cross_validation import NormalEquations
 from lagnet.diagnosis.regression.library import Library
@@ -84,6 +85,11 @@ class DiagnosisState:
     def remainders(self) -> tuple[JointRemainder, ...]:
         """The remainder of each joint: power, residual share and predictable share."""
         return joint_remainders(self.problem, self.after, self.noise, self.seed)
+
+    @cached_property
+    def identified(self) -> Identified | None:
+        """What the fitted recordings determine beside the named effects, whatever its cause; None where nothing."""
+        return identify(lasting(self.problem, self.events), self.effects)
 
     @property
     def missed(self) -> np.ndarray:

@@ -52,6 +52,11 @@ class NormalEquations:
         """For each joint, the sums of all blocks but those of each fold, shape (n_folds, K + 1, K + 1)."""
         return tuple(t[None] - f for t, f in zip(self.total, self.folds, strict=True))
 
+    @cached_property
+    def penalties(self) -> np.ndarray:
+        """Complexity penalty of each hypothesis, shape (n_hypotheses,) [nats]."""
+        return np.array([self.limits.penalty(*freedom) for freedom in self.library.freedom])
+
     def is_felt(self, joint: int, index: int) -> bool:
         """Whether a hypothesis has any torque at a joint: a link loads no joint behind it."""
         columns = self.columns(joint, [index])

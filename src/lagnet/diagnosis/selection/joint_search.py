@@ -64,14 +64,8 @@ class JointView:
         floor = np.maximum(errors, max(1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300))
         evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
         barred = library.barred[self.joint][:, [local.index(i) for i in selection]].any(axis=1)
-        penalty = self._penalties + sum(self.limits.penalty(*library.freedom[i]) for i in selection)
-        return np.where(feasible & ~barred, evidence - penalty, -np.inf)
-
-    @property
-    def _penalties(self) -> np.ndarray:
-        library = self.equations.library
-        made = lambda: np.array([self.limits.penalty(*library.freedom[i]) for i in library.local[self.joint]])  # noqa: E731
-        return self.equations.remembered(("penalties", self.joint), made)
+        penalties = self.equations.penalties[list(local)] + self.equations.penalties[list(selection)].sum()
+        return np.where(feasible & ~barred, evidence - penalties, -np.inf)
 
     def remembered(self, what: Hashable, make: Callable[[], tuple[int, ...]]) -> tuple[int, ...]:
         """A selection that `make` finds on this system under these scales, found once."""
