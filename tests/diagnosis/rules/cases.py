@@ -197,6 +197,16 @@ def gain_beside_another_law(b: Bench) -> Candidate:
     return b.of("root", lambda q, v, a, t: 6.0 * np.sign(v) * np.abs(v) ** 0.7, "viscous_friction", "torque_gain")
 
 
+def gain_of_heavier_links(b: Bench) -> Candidate:
+    """All links are half as heavy again."""
+    heavier = b.arm.with_inertial_parameters(1.5 * np.asarray(b.arm.inertial_parameters()))
+    return b.candidate("heavier", b.plant(robot=heavier).record, ["torque_gain"])
+
+
+def gain_of_a_sensor(b: Bench) -> Candidate:
+    return b.of("gain", lambda q, v, a, tau: 0.5 * tau, "torque_gain")
+
+
 def small_friction(b: Bench) -> Candidate:
     return b.of("small", lambda q, v, a, t: 6.0 * v + 0.25 * np.tanh(v / 1e-3), "viscous_friction", "coulomb_friction")
 
@@ -216,6 +226,7 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
     "surrogate_terms": (cubic_drag_as_quadratic, "quadratic_drag", quadratic_drag),
     "impossible_density": (mass_in_one_point, "link_inertia", tool_on_a_link),
     "distant_centre": (link_with_its_mass_far_away, "link_inertia", tool_on_a_link),
+    "absent_beside_free_links": (gain_of_heavier_links, "torque_gain", gain_of_a_sensor),
     "reversal_delay": (early_friction_as_delay, "time_delay", delay_beside_friction),
     "value_at_bound": (later_than_is_searched, "time_delay", late_by_less),
     "not_significant": (gain_beside_another_law, "torque_gain", small_friction),

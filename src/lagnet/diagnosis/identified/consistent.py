@@ -2,6 +2,7 @@
 
 χ² is the quadratic cost of a change of bodies with all other unknowns refitted, D the log-determinant divergence from
 the modelled links made rounder, w at most one nat a unit: directions that the recordings leave open stay as modelled.
+How far links are drawn towards the model is decided by blocks of the recordings that are held out.
 Source: Wensing 2018, Lee 2020.
 """
 
@@ -13,11 +14,11 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import BODY, Design
 from lagnet.diagnosis.identified.evidence import JointEquations
-from lagnet.diagnosis.identified.folds import Choice
+from lagnet.diagnosis.identified.folds import Choice, block_folds
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
-NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: the first whose bodies fit
+NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: that which predicts held-out blocks best
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
 RADIUS = 0.1  # [m] of the ball that replaces such a link
 WORSE = 1.5  # largest squared error of a joint over that of unconstrained parameters: beyond, bodies are not the cause
@@ -38,16 +39,23 @@ def consistent_unknowns(
         The unknowns, shape (n_unknowns,), and Δπ, shape (dof, 10), which also has parameters that the motion does not
         excite.
     """
-    limit = WORSE * _errors(design, sums, choice.ridge.x)
+    modelled, best = np.asarray(modelled, dtype=float), choice.ridge.x
+    limit = WORSE * _errors(design, sums, best)
+    folds, least = block_folds(design), np.inf
+    bodies = design.unscaled(best)[: design.n_bodies].reshape(-1, BODY)
     for weight in NATS:
         try:
-            x, bodies = _constrained(design, sums, choice, np.asarray(modelled, dtype=float), weight)
+            x, real = _constrained(design, sums, choice, modelled, weight)
+            if np.any(_errors(design, sums, x) > limit):
+                continue
+            parts = [_constrained(design, f.fitted, choice, modelled, weight)[0] for f in folds]
         except np.linalg.LinAlgError:
             continue
-        if np.all(_errors(design, sums, x) <= limit):
-            return x, bodies
-    free = choice.ridge.x
-    return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
+        unseen = sum(_errors(design, f.held_out, part) for f, part in zip(folds, parts, strict=True))
+        error = float(np.sum(np.log(np.maximum(unseen, 1e-300))))
+        if error < least:
+            best, bodies, least = x, real, error
+    return best, bodies
 
 
 def _errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from lagnet.diagnosis.rules.absent_beside_free_links import AbsentBesideFreeLinks
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
 from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
 from lagnet.diagnosis.rules.distant_centre import DistantCentre
@@ -26,6 +27,7 @@ RULES: tuple[RejectionRule, ...] = (
     SurrogateTerms(),
     ImpossibleDensity(),
     DistantCentre(),
+    AbsentBesideFreeLinks(),
     ReversalDelay(),
     ValueAtBound(),
     NotSignificant(),

@@ -149,6 +149,7 @@ KINDS: dict[str, Callable[[Seen], np.ndarray]] = {
         for kind, f in BENDS.items()
     },
     "load": lambda x: np.abs(x.load[:, x.joint]) * x.direction(x.joint),
+    "gain": lambda x: x.load[:, x.joint],
     "bristle": _bristle,
     "spring": lambda x: x.motion.q[:, x.joint],
     "cross_viscous": lambda x: x.motion.v[:, x.partner],
