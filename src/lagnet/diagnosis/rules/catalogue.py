@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from lagnet.diagnosis.rules.absent_beside_free_links import AbsentBesideFreeLinks
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
 from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
 from lagnet.diagnosis.rules.distant_centre import DistantCentre
+from lagnet.diagnosis.rules.gain_beside_free_links import GainBesideFreeLinks
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
 from lagnet.diagnosis.rules.lack_of_fit import LackOfFit
 from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
@@ -27,7 +27,7 @@ RULES: tuple[RejectionRule, ...] = (
     SurrogateTerms(),
     ImpossibleDensity(),
     DistantCentre(),
-    AbsentBesideFreeLinks(),
+    GainBesideFreeLinks(),
     ReversalDelay(),
     ValueAtBound(),
     NotSignificant(),

@@ -29,18 +29,18 @@ STANDARD_ERRORS = 3.0  # by which the two estimates must differ
 
 @final
 @dataclass(frozen=True)
-class AbsentBesideFreeLinks(RejectionRule):
-    """Share of the gain's deviation from one that is left beside free inertial parameters of all links.
+class GainBesideFreeLinks(RejectionRule):
+    """Change of the gain beside free inertial parameters of all links, over its deviation from one.
 
     Args:
-        least_left: share of g − 1.
+        most_change: of g, as a share of |g − 1|.
     """
 
-    name: ClassVar[str] = "absent_beside_free_links"
-    statement: ClassVar[str] = "a gain holds beside free inertial parameters of all links"
+    name: ClassVar[str] = "gain_beside_free_links"
+    statement: ClassVar[str] = "a gain keeps its value beside free inertial parameters of all links"
     source: ClassVar[str] = "gautier1990"
 
-    least_left: float = 0.5
+    most_change: float = 0.5
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         pairs = zip(candidate.indices, candidate.effects, strict=True)
@@ -49,11 +49,12 @@ class AbsentBesideFreeLinks(RejectionRule):
         rejections = []
         for (index, effect), (free, error) in zip(gains.items(), found, strict=False):
             named = effect.values["g"] - 1.0
-            left = free / named
-            if left < self.least_left and abs(named - free) > STANDARD_ERRORS * error:
+            change = abs(free - named)
+            if change > max(self.most_change * abs(named), STANDARD_ERRORS * error):
                 detail = f"with all links free it is {1.0 + free:.4g} ± {1.96 * error:.2g}, not {1.0 + named:.4g}"
-                rejections.append(self.rejection(candidate, index, left, self.least_left, detail))
-        return tuple(sorted(rejections, key=lambda r: r.value))
+                share = change / max(abs(named), 1e-12)
+                rejections.append(self.rejection(candidate, index, share, self.most_change, detail))
+        return tuple(sorted(rejections, key=lambda r: -r.value))
 
 
 def gains_beside_free_links(candidate: Candidate, gains: Sequence[NamedEffect]) -> list[tuple[float, float]]:
