@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from lagnet.types import Samples
 
@@ -32,6 +33,7 @@ def lag_in_gap(time: Samples, push: Samples, half_gap: float) -> np.ndarray:
     return lag
 
 
+@njit(cache=True, error_model="numpy")
 def _fly(time: Samples, push: Samples, half_gap: float, side: float, first: int, lag: np.ndarray) -> tuple[int, float]:
     """Writes a flight that begins before sample `first` into `lag`: the sample after it has landed, and the flank."""
     x, w, before, left = side * half_gap, 0.0, float(push[first - 1]), float(time[first] - time[first - 1])
@@ -47,7 +49,7 @@ def _fly(time: Samples, push: Samples, half_gap: float, side: float, first: int,
                 lag[k] = x
                 return k + 1, float(np.sign(x))
             w = now * min(since, left)  # its load presses it off at once
-            x = float(np.clip(x + w * min(since, left) / 2.0, -half_gap, half_gap))
+            x = min(max(x + w * min(since, left) / 2.0, -half_gap), half_gap)
         lag[k], before = x, now
         if k + 1 < push.size:
             left = float(time[k + 1] - time[k])

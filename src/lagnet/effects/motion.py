@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -80,7 +81,7 @@ class Motion:
 
         return self.remembered("links", links)[joint]
 
-    def remembered(self, key: str, make: Any) -> Any:
+    def remembered(self, key: Hashable, make: Any) -> Any:
         """The value of `make()`, kept for the other effects that ask for the same key."""
         if key not in self.cache:
             self.cache[key] = make()

@@ -22,6 +22,7 @@ OVERSAMPLING = 2.5  # reduced samples per second over the bandwidth: Nyquist wit
 LONGEST = 20_000  # samples of a piece: bounds the memory of a regressor
 REST = 0.6  # a joint rests where it stays slow for this many periods of the bandwidth
 SUMMARY = 6_000  # samples of the summary motion
+MOST_KEPT = 128e6  # bytes of all regressors of a problem up to which they are kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,7 @@ class Segment:
         counts: shape (len(keep), dof), False where the joint rests and dry friction may take any value.
         origin: index of the fitted recording that it is a part of; None for another recording.
         columns: low-passed columns of hypotheses that were asked for already, by what they follow from.
+        known: what follows from the samples and a nominal model, by that model: regressors, low-passed torque.
     """
 
     time: np.ndarray
@@ -48,18 +50,31 @@ class Segment:
     counts: np.ndarray
     origin: int | None = None
     columns: dict[Hashable, np.ndarray] = field(default_factory=dict, init=False, repr=False)
+    known: list[tuple[InverseDynamics, dict]] = field(default_factory=list, init=False, repr=False)
 
     def with_counts(self, counts: np.ndarray) -> Segment:
         """The same piece with other samples that count, shape (len(keep), dof)."""
         out = replace(self, counts=counts)
         out.columns.update(self.columns)
+        out.known.extend(self.known)
         return out
 
     def motion(self, problem: Problem) -> Motion:
         """The piece as the effects see it."""
-        recorded = low_pass(self.tau, problem.rate, problem.bandwidth)
+        cache = self._known_of(problem)
+        key = ("recorded", problem.rate, problem.bandwidth)
+        if key not in cache:
+            cache[key] = low_pass(self.tau, problem.rate, problem.bandwidth)
         seen = (self.time, self.q, self.v, self.a, self.load, problem.slow, problem.nominal)
-        return Motion(*seen, recorded, problem.held, self.origin, problem.straight)
+        return Motion(*seen, cache[key], problem.held, self.origin, problem.straight, cache)
+
+    def _known_of(self, problem: Problem) -> dict:
+        """What is known of the samples under the problem's nominal model; of much motion nothing is kept."""
+        if not problem.is_small:
+            return {}
+        if not self.known or self.known[0][0] is not problem.nominal:
+            self.known[:] = [(problem.nominal, {})]
+        return self.known[0][1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +114,12 @@ class Problem:
     def n_dof(self) -> int:
         """Number of joints."""
         return len(self.joints)
+
+    @cached_property
+    def is_small(self) -> bool:
+        """Whether the joint torque regressors of all samples fit into memory."""
+        samples = sum(p.time.size for p in (*self.fit, *self.holdout))
+        return 8.0 * samples * self.n_dof * 10 * self.n_dof <= MOST_KEPT
 
     @cached_property
     def unseen_variance(self) -> np.ndarray:

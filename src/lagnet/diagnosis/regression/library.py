@@ -212,9 +212,8 @@ def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Mot
     """The motion with the torque τ_nominal + Σ τ_body that a law acts on."""
     if not known or law.stage == "body":
         return motion
-    return motion.with_load(
-        motion.remembered(f"load before {law.stage}", lambda: load_before(motion, known, law.stage))
-    )
+    key = ("load before", law.stage, *(e.key for e in known), motion.slow.tobytes())
+    return motion.with_load(motion.remembered(key, lambda: load_before(motion, known, law.stage)))
 
 
 def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:

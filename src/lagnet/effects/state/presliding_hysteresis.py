@@ -5,6 +5,7 @@ from typing import final
 
 import numpy as np
 
+from lagnet.effects.bristle import bristle
 from lagnet.effects.effect import Parameter, StateEffect, Values
 from lagnet.effects.excitation import needs_reversals
 from lagnet.effects.motion import Motion
@@ -40,7 +41,7 @@ class PreslidingHysteresis(StateEffect):
         return tuple({"distance": float(d)} for d in np.geomspace(REACH[0] * reach, REACH[1] * reach, DISTANCES))
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        return _bristle(motion.q[:, joint], shape["distance"])[:, None]
+        return bristle(motion.q[:, joint], shape["distance"])[:, None]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(1), np.full(1, np.inf)
@@ -52,7 +53,7 @@ class PreslidingHysteresis(StateEffect):
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         if values["Fc"] <= 0.0 or values["sigma0"] <= 0.0:
             return np.zeros(motion.time.size)
-        return values["Fc"] * _bristle(motion.q[:, joint], values["Fc"] / values["sigma0"])
+        return values["Fc"] * bristle(motion.q[:, joint], values["Fc"] / values["sigma0"])
 
     def init_state(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         return np.zeros(1)
@@ -62,14 +63,3 @@ class PreslidingHysteresis(StateEffect):
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_reversals(motion, joint)
-
-
-def _bristle(q: np.ndarray, distance: float) -> np.ndarray:
-    """Bend of the bristles over that at which they slide, shape (n,), exact between samples of monotone motion."""
-    steps = np.diff(q)
-    keep, push = np.exp(-np.abs(steps) / distance).tolist(), np.sign(steps).tolist()
-    bend, out = 0.0, [0.0]
-    for k, s in zip(keep, push, strict=True):
-        bend = s + (bend - s) * k
-        out.append(bend)
-    return np.array(out)

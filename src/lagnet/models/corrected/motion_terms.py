@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.effects.bristle import bristle
 from lagnet.effects.motion import Motion
 from lagnet.effects.rest import blurred_sign, resting
 from lagnet.types import Trajectory
@@ -100,17 +101,6 @@ def _bristle(seen: Seen) -> np.ndarray:
     behind = bristle(motion.q[:, j], seen.scale) - seen.direction(j)
     still = resting(motion.time, motion.v[:, j], seen.rest.speed[j])
     return np.where(still, seen.rest.held[j] * behind, behind)
-
-
-def bristle(q: np.ndarray, distance: float) -> np.ndarray:
-    """State z of dz = (sign dq − z) |dq| / distance from zero, shape (n,); exact while the sign of dq stays."""
-    steps = np.diff(q)
-    keep, push = np.exp(-np.abs(steps) / distance).tolist(), np.sign(steps).tolist()
-    bend, out = 0.0, [0.0]
-    for k, s in zip(keep, push, strict=True):
-        bend = s + (bend - s) * k
-        out.append(bend)
-    return np.array(out)
 
 
 def _relative(seen: Seen, sense: float) -> np.ndarray:
