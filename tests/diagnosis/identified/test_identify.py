@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.diagnosis.conftest import Plant
+from validation.far_models.plants import draw
+from validation.far_models.study import FLOOR
 from validation.real_arms.least_squares import LeastSquares
 
 from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.conditioning.condition import condition
@@ -123,3 +126,33 @@ def test_joints_that_rest_are_not_made_worse(held: tuple[int, ...]) -> None:
     before = unseen_errors(problem, lambda p: p.load)
     after = before if found is None else unseen_errors(problem, along(corrected(problem, found)))
     assert np.all(after < 1.1 * before + 0.005**2 * problem.scale**2)
+
+
+def test_torque_in_phase_with_minus_a_is_speed_that_lags_and_no_inertia() -> None:
+    arm = random_arm(3, seed=5, kinds=("revolute",))
+    size = 3.0 * np.diagonal(arm.mass_matrix(np.zeros((1, 3)))[0])[2]
+
+    def late(q, v, a, load):
+        return np.outer(-size * a[:, 2], [0.0, 0.0, 1.0])
+
+    problem = posed(arm, Plant(arm, [late]))
+    found = identify(problem, ())
+    model = corrected(problem, found)
+    lags = {t.joint: w for t, w in zip(found.layer.terms, found.layer.weights, strict=True) if t.kind == "lag"}
+    assert lags[2] > 0
+    poses = np.concatenate([p.q for p in problem.fit])[::100]
+    assert np.all(np.linalg.eigvalsh(model.mass_matrix(poses)) > 0)
+    before, after = unseen_errors(problem, lambda p: p.load), unseen_errors(problem, along(model))
+    assert after[2] < MUCH_LESS * before[2]
+
+
+@pytest.mark.parametrize("number", [3, 13])
+def test_masses_that_are_missing_cost_no_joint_more_than_least_squares(number) -> None:
+    plant = draw(number)
+    fit = condition([plant.record(1)])
+    problem = fit_sign_model(pose_problem(plant.nominal, fit, condition([plant.record(2)], fit.bandwidth)))
+    squares = LeastSquares(plant.nominal, problem)
+    ours, theirs = (
+        unseen_errors(problem, torque) for torque in (along(corrected(problem, identify(problem, ()))), squares.torque)
+    )
+    assert np.all(ours <= np.maximum(NO_WORSE * theirs, FLOOR * problem.unseen_variance))

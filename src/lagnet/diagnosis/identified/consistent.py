@@ -39,23 +39,24 @@ def consistent_unknowns(
         The unknowns, shape (n_unknowns,), and Δπ, shape (dof, 10), which also has parameters that the motion does not
         excite.
     """
-    modelled, best = np.asarray(modelled, dtype=float), choice.ridge.x
-    limit = WORSE * _errors(design, sums, best)
-    folds, least = block_folds(design), np.inf
-    bodies = design.unscaled(best)[: design.n_bodies].reshape(-1, BODY)
+    modelled, free = np.asarray(modelled, dtype=float), choice.ridge.x
+    folds, found = block_folds(design), []
+    limit = WORSE * _errors(design, sums, free)
     for weight in NATS:
         try:
-            x, real = _constrained(design, sums, choice, modelled, weight)
+            x, bodies = _constrained(design, sums, choice, modelled, weight)
             if np.any(_errors(design, sums, x) > limit):
                 continue
             parts = [_constrained(design, f.fitted, choice, modelled, weight)[0] for f in folds]
         except np.linalg.LinAlgError:
             continue
         unseen = sum(_errors(design, f.held_out, part) for f, part in zip(folds, parts, strict=True))
-        error = float(np.sum(np.log(np.maximum(unseen, 1e-300))))
-        if error < least:
-            best, bodies, least = x, real, error
-    return best, bodies
+        found.append((x, bodies, np.maximum(unseen, 1e-300)))
+    if not found:
+        return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
+    least = np.min([unseen for _, _, unseen in found], axis=0)
+    x, bodies, _ = min(found, key=lambda one: float(np.max(one[2] / least)))  # no joint is given up for another
+    return x, bodies
 
 
 def _errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.models.corrected.motion_terms import BENDS, MotionTerm
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
+LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
 USUAL = 0.98  # quantile of |v| taken for the usual largest speed
 
@@ -45,6 +47,11 @@ def term_groups(problem: Problem) -> tuple[TermGroup, ...]:
     speed = np.maximum(np.quantile(np.abs(v), USUAL, axis=0), 1e-9)
     groups = [g for j in range(problem.n_dof) for g in _of_joint(j, float(speed[j]), float(reach[j]))]
     return (*groups, *(g for j in range(1, problem.n_dof) for g in _of_pair(j - 1, j)))
+
+
+def lag_groups(problem: Problem, joints: Collection[int]) -> tuple[TermGroup, ...]:
+    """Delayed speed of joints whose torque has a part in phase with −a, which no rotor can have."""
+    return tuple(TermGroup("lag", (MotionTerm("lag", j, LAG / problem.bandwidth),)) for j in sorted(joints))
 
 
 def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:

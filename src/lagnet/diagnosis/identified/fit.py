@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lagnet.diagnosis.identified.consistent import consistent_unknowns
 from lagnet.diagnosis.identified.design import BODY, Design, FitSegment, make_design, usual_rest
-from lagnet.diagnosis.identified.dictionary import term_groups
+from lagnet.diagnosis.identified.dictionary import TermGroup, lag_groups, term_groups
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice, choose
 from lagnet.diagnosis.identified.rest import friction_at_rest
@@ -17,7 +17,7 @@ from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.changed_bodies import inertial_parameters_of, named_body_change
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
-from lagnet.models.corrected.motion_terms import INERTIA, Rest
+from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 
 NOTHING = 1e-7  # of a joint's torque: a smaller term is zero
@@ -59,14 +59,36 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
     segments = [_with_load(s, _layer(first, ridge.x, rest)) for s in segments]
     without_bodies = [replace(s, regressor=None) for s in segments]
     for pieces in (segments, without_bodies):  # the second where changed bodies harm some joint
-        design = make_design(problem, pieces, groups)
-        choice = choose(design)
-        if choice is not None:
-            layer, found, choice = _positive_definite(problem, effects, design, choice, rest)
-            layer = replace(layer, rest=friction_at_rest(problem, pieces, layer))
-            if not _harms(problem, pieces, layer):
-                return Identified(layer, found, choice)
+        found = _fitted(problem, effects, pieces, groups, rest)
+        if found is not None and not _harms(problem, pieces, found.layer):
+            return found
     return None
+
+
+def _fitted(
+    problem: Problem, effects: Sequence[NamedEffect], pieces: list[FitSegment], groups: Sequence[TermGroup], rest: Rest
+) -> Identified | None:
+    """The layer on some equations; a joint whose rotor would be negative has speed that lags in its place."""
+    late: set[int] = set()
+    while True:
+        design = make_design(problem, pieces, [*groups, *lag_groups(problem, late)])
+        design = design.without(_rotors(design, late))
+        choice = choose(design)
+        if choice is None:
+            return None
+        layer, final, choice = _positive_definite(problem, effects, design, choice, rest)
+        negative = {t.joint for i, t in _columns_of(design, "rotor") if design.scale[i] > 0 and final.scale[i] == 0}
+        if not negative - late:
+            return Identified(replace(layer, rest=friction_at_rest(problem, pieces, layer)), final, choice)
+        late |= negative
+
+
+def _columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
+    return [(design.n_bodies + i, t) for i, t in enumerate(design.terms) if t.kind == kind]
+
+
+def _rotors(design: Design, joints: Collection[int]) -> np.ndarray:
+    return np.array([i for i, t in _columns_of(design, "rotor") if t.joint in joints], dtype=int)
 
 
 def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLayer) -> bool:

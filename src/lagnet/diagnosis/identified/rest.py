@@ -13,10 +13,11 @@ from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.motion_terms import Rest
 
 FEW = 8  # samples at rest below which s is not estimated
+UNKNOWN = 0.5  # s where recordings do not show it: the error is least in the worse case
 
 
 def friction_at_rest(problem: Problem, segments: Sequence[FitSegment], layer: IdentifiedLayer) -> Rest:
-    """The layer's rest with the estimated share; 1 where recordings do not show it.
+    """The layer's rest with the estimated share; a half where recordings do not show it.
 
     Args:
         problem: gives filter and motion.
@@ -28,7 +29,7 @@ def friction_at_rest(problem: Problem, segments: Sequence[FitSegment], layer: Id
     power = np.sum(held**2 * resting, axis=0)
     share = np.sum(residual * held * resting, axis=0) / np.where(power > 0, power, 1.0)
     shown = (resting.sum(axis=0) >= FEW) & (power > 0)
-    return replace(layer.rest, held=np.where(shown, np.clip(share, 0.0, 1.0), layer.rest.held))
+    return replace(layer.rest, held=np.where(shown, np.clip(share, 0.0, 1.0), UNKNOWN))
 
 
 def _at_rest(problem: Problem, s: FitSegment, layer: IdentifiedLayer) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -103,6 +103,17 @@ def _bristle(seen: Seen) -> np.ndarray:
     return np.where(still, seen.rest.held[j] * behind, behind)
 
 
+def _lag(seen: Seen) -> np.ndarray:
+    """v(t − T) − v(t): how far speed was behind a moment ago, −T a for a short T; nothing where samples have no order.
+
+    Torque in phase with −a is no inertia: a drive that answers late to friction shows it.
+    """
+    if seen.rest is None:
+        return np.zeros(len(seen.motion.q))
+    time = seen.motion.time
+    return np.interp(time - seen.scale, time, seen.speed) - seen.speed
+
+
 def _relative(seen: Seen, sense: float) -> np.ndarray:
     """Direction of the speed v_j ± v_k of what turns with both joints, as this joint feels it."""
     motion, blur = seen.motion, np.hypot(seen.motion.slow[seen.joint], seen.motion.slow[seen.partner])
@@ -141,6 +152,7 @@ KINDS: dict[str, Callable[[Seen], np.ndarray]] = {
     "load": lambda x: np.abs(x.load[:, x.joint]) * x.direction(x.joint),
     "gain": lambda x: x.load[:, x.joint],
     "bristle": _bristle,
+    "lag": _lag,
     "spring": lambda x: x.motion.q[:, x.joint],
     "cross_viscous": lambda x: x.motion.v[:, x.partner],
     "cross_inertia": lambda x: x.motion.a[:, x.partner],
