@@ -30,10 +30,10 @@ from lagnet.models.serial_chain.search import search_axes
 from lagnet.models.serial_chain.separable import make_samples
 from lagnet.models.serial_chain.settings import SearchSettings, SerialChainSettings
 from lagnet.models.serial_chain.unknowns import STANDARD_GRAVITY, Unknowns, normalise_gravity
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.xml_files import checked_xml
 from lagnet.types import InverseDynamics
 
 pytestmark = pytest.mark.slow

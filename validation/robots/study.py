@@ -16,7 +16,7 @@ from lagnet.errors import RobotError
 from lagnet.plausibility.bodies import moving_bodies, reach
 from lagnet.plausibility.subject import Subject
 from lagnet.plausibility.suite import check
-from lagnet.rigid_body.named_robots import named_robots
+from lagnet.rigid_body.descriptions.named_robots import named_robots
 from lagnet.rigid_body.robot import Robot, load_description
 
 HERE = Path(__file__).resolve().parent

@@ -12,14 +12,14 @@ import numpy as np
 from lagnet.errors import RobotError
 from lagnet.rigid_body import batches
 from lagnet.rigid_body.body_tree import TreeBody, tree_of
-from lagnet.rigid_body.description import NONE_HELD, Description
+from lagnet.rigid_body.descriptions.description import NONE_HELD, Description
+from lagnet.rigid_body.descriptions.mjcf import read_mjcf
+from lagnet.rigid_body.descriptions.named_robots import HELD_JOINTS, named_robot_path, named_robots
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
+from lagnet.rigid_body.descriptions.xml_files import read_xml
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
-from lagnet.rigid_body.mjcf import read_mjcf
-from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
 from lagnet.rigid_body.untyped_pinocchio import Data, Inertia, Model, pin
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
-from lagnet.rigid_body.xml_files import read_xml
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.rigid_body.writing import write_text
+from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.simulators.arm_physics import ArmPhysics
 from lagnet.simulators.forward_motion import motor_inertia
 from lagnet.simulators.urdf_text import BODY_SHARE

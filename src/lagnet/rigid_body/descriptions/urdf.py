@@ -9,12 +9,18 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
+from lagnet.rigid_body.descriptions.description import (
+    NONE_HELD,
+    Description,
+    check_held,
+    friction_warning,
+    moving_bodies,
+)
+from lagnet.rigid_body.descriptions.mass_checks import mass_warnings
+from lagnet.rigid_body.descriptions.urdf_checks import check_tree, numbers
+from lagnet.rigid_body.descriptions.xml_files import XmlFile
 from lagnet.rigid_body.inertia import parameters_of_body
-from lagnet.rigid_body.mass_checks import mass_warnings
 from lagnet.rigid_body.untyped_pinocchio import SE3, Model, pin
-from lagnet.rigid_body.urdf_checks import check_tree, numbers
-from lagnet.rigid_body.xml_files import XmlFile
 
 MOVING = ("revolute", "continuous", "prismatic")
 UNLIMITED = "1e300"  # a limit that the URDF parser accepts; callers see inf

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import moving_bodies
+from lagnet.rigid_body.descriptions.description import moving_bodies
 from lagnet.rigid_body.untyped_pinocchio import Model, pin
 
 SINGULAR = 1e-10  # of the largest eigenvalue of a mass matrix scaled to a unit diagonal; real arms stay above 1e-4

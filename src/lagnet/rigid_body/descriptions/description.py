@@ -9,8 +9,8 @@ from types import MappingProxyType
 import numpy as np
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.descriptions.xml_files import XmlFile
 from lagnet.rigid_body.untyped_pinocchio import Model, pin
-from lagnet.rigid_body.xml_files import XmlFile
 
 NONE_HELD: Mapping[str, float] = MappingProxyType({})
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from lagnet.errors import RobotError
 from lagnet.files import write_whole
-from lagnet.rigid_body.description import Description
+from lagnet.rigid_body.descriptions.description import Description
+from lagnet.rigid_body.descriptions.urdf import hold_joints
 from lagnet.rigid_body.untyped_pinocchio import Inertia, Model, pin
-from lagnet.rigid_body.urdf import hold_joints
 
 BASE = "base"
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from xml.etree.ElementTree import Element
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.urdf_checks import MAX_JOINTS
+from lagnet.rigid_body.descriptions.urdf_checks import MAX_JOINTS
 
 SUPPORTED = ("hinge", "slide")
 KEPT = ("compiler", "default", "option", "worldbody")

@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.descriptions.urdf_checks import numbers
 from lagnet.rigid_body.untyped_pinocchio import SE3, Inertia, pin
-from lagnet.rigid_body.urdf_checks import numbers
 
 DENSITY = "1000"  # [kg/m³], MuJoCo's default
 SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}

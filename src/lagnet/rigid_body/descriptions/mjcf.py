@@ -12,13 +12,19 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from lagnet.errors import RobotError
-from lagnet.rigid_body.description import NONE_HELD, Description, check_held, friction_warning, moving_bodies
-from lagnet.rigid_body.mass_checks import mass_warnings
-from lagnet.rigid_body.mjcf_checks import SUPPORTED, reduce_mjcf
-from lagnet.rigid_body.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
+from lagnet.rigid_body.descriptions.description import (
+    NONE_HELD,
+    Description,
+    check_held,
+    friction_warning,
+    moving_bodies,
+)
+from lagnet.rigid_body.descriptions.mass_checks import mass_warnings
+from lagnet.rigid_body.descriptions.mjcf_checks import SUPPORTED, reduce_mjcf
+from lagnet.rigid_body.descriptions.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
+from lagnet.rigid_body.descriptions.urdf_checks import numbers
+from lagnet.rigid_body.descriptions.xml_files import XmlFile
 from lagnet.rigid_body.untyped_pinocchio import SE3, Inertia, JointModel, Model, pin
-from lagnet.rigid_body.urdf_checks import numbers
-from lagnet.rigid_body.xml_files import XmlFile
 
 MOST_COEFFICIENTS = 3
 Defaults = dict[str, dict[str, dict[str, str]]]  # class → tag → attributes

@@ -7,7 +7,7 @@ import pytest
 
 from lagnet.errors import ModelError, RobotError
 from lagnet.models.files.loading import load_any
-from lagnet.rigid_body.named_robots import named_robot_path
+from lagnet.rigid_body.descriptions.named_robots import named_robot_path
 from lagnet.rigid_body.robot import Robot, load_description
 
 GRIPPER = """<mujoco><compiler angle="degree"/><worldbody>
