@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from lagnet.cli.console import say
+from lagnet.cli.shared.console import say
 from lagnet.files import write_whole
 
 FILE = "envelope.json"

@@ -47,7 +47,7 @@ def diagnose_on_motion(
     seed: int,
 ) -> None:
     """Diagnoses, writes verdict, table, corrected model and report, and says what was found."""
-    from lagnet.cli.console import say
+    from lagnet.cli.shared.console import say
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
     from lagnet.diagnosis.motion.writing import write_motion_diagnosis
     from lagnet.reports.motion_report import write_motion_report

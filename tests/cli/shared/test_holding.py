@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagnet.cli.main import main
-from lagnet.cli.robots import held_joints
+from lagnet.cli.shared.robots import held_joints
 from lagnet.errors import LagnetError
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lagnet.cli.many_values import repeat_options
+from lagnet.cli.shared.many_values import repeat_options
 
 
 @pytest.mark.parametrize(

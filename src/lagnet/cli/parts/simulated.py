@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lagnet.cli.console import say
+from lagnet.cli.shared.console import say
 
 if TYPE_CHECKING:
     from lagnet.recordings.recording import Recording

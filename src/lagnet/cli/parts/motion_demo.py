@@ -13,8 +13,8 @@ def demonstrate_on_motion(out: Path, seed: int) -> None:
     Raises:
         MissingExtraError: PyBullet is not installed.
     """
-    from lagnet.cli.console import say
-    from lagnet.cli.envelope import say_opened, seal
+    from lagnet.cli.parts.envelope import say_opened, seal
+    from lagnet.cli.shared.console import say
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
     from lagnet.diagnosis.motion.writing import write_motion_diagnosis
     from lagnet.recordings.loading.load import load_recording

@@ -33,7 +33,7 @@ def replay_settings(
         what = "the servos of a diagnosis on motion are not written for simulators"
         step = "leave it out: the report shows rollouts of the commands, nominal and corrected, by lagnet itself"
         raise LagnetError(what, where="--replay", next_step=step)
-    from lagnet.cli.replay import servo_of
+    from lagnet.cli.shared.replays import servo_of
     from lagnet.simulators.replay import ReplaySettings, started
 
     settings = ReplaySettings(engine=engine, servo=servo_of(kp, kd))
@@ -49,8 +49,8 @@ def replay_held_out(result: Diagnosis, settings: ReplaySettings, out: Path) -> R
     """
     from dataclasses import replace
 
-    from lagnet.cli.console import say
-    from lagnet.cli.replay import say_replay
+    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.replays import say_replay
     from lagnet.reports.replay_data import ReplayData
     from lagnet.simulators.before_after import before_and_after, columns_of, write_replay
 
