@@ -9,7 +9,7 @@ from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Diagnosis
-    from lagnet.reports.replay_data import ReplayData
+    from lagnet.reports.contents.replay_data import ReplayData
     from lagnet.simulators.replay import ReplaySettings
 
 TOTAL, LONGEST, SHORTEST = 60.0, 30.0, 2.0  # [s] replayed of all recordings together; of one, at most and at least
@@ -51,7 +51,7 @@ def replay_held_out(result: Diagnosis, settings: ReplaySettings, out: Path) -> R
 
     from lagnet.cli.shared.console import say
     from lagnet.cli.shared.replays import say_replay
-    from lagnet.reports.replay_data import ReplayData
+    from lagnet.reports.contents.replay_data import ReplayData
     from lagnet.simulators.before_after import before_and_after, columns_of, write_replay
 
     held = list(result.holdout_recordings)

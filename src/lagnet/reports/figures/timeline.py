@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.decomposition.decompose import Decomposition
-from lagnet.reports.decimation import extremes
+from lagnet.reports.figures.decimation import extremes
 
 
 @dataclass(frozen=True, eq=False)

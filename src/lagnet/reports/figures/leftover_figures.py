@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from lagnet.diagnosis.verdict.report_data import JointEvidence
-from lagnet.reports.decimation import scattered
-from lagnet.reports.figures import Figure, axis, colour, packed
+from lagnet.reports.figures.decimation import scattered
+from lagnet.reports.figures.figure import Figure, axis, colour, packed
 from lagnet.reports.wording import percent
 
 SHOWN = 1500  # samples of a cloud

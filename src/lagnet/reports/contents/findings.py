@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lagnet.diagnosis.verdict.report_data import JointEvidence, ReportData
-from lagnet.reports.replay_data import ReplayData
+from lagnet.reports.contents.replay_data import ReplayData
 
 WHOLE_ARM = "the whole arm"
 

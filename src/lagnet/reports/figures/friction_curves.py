@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.reports.figures import Figure, Trace, axis, colour, packed, plain
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.figure import Figure, Trace, axis, colour, packed, plain
 from lagnet.reports.wording import shortened
 
 ACROSS = 4  # plots in a row, at most

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagnet.diagnosis.verdict.report_data import HeldOutSeries
-from lagnet.reports.decimation import (
+from lagnet.reports.figures.decimation import (
     PAGE_POINTS,
     broken,
     chosen_samples,

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.verdict.report_data import HeldOutSeries, JointEvidence
-from lagnet.reports.decimation import broken, chosen_samples, cloud_budget, end_to_end, scattered, series_budget
-from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed, plain
+from lagnet.reports.figures.decimation import broken, chosen_samples, cloud_budget, end_to_end, scattered, series_budget
+from lagnet.reports.figures.figure import SAME_X, Figure, Trace, axis, colour, packed, plain
 from lagnet.reports.wording import effect_words, file_name, listed, shortened
 
 WINDOW, WINDOW_SHOWN_WHOLE = 20.0, 30.0  # seconds shown at first of a recording longer than the second figure

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagnet.diagnosis.verdict.report_data import Skeleton
-from lagnet.reports.arm_drawing import CHARACTER, ELEVATION, LINE, RADIUS, WIDTH, draw_arm, draw_chain
+from lagnet.reports.figures.arm_drawing import CHARACTER, ELEVATION, LINE, RADIUS, WIDTH, draw_arm, draw_chain
 
 ROUNDING = 1e-9  # of a few sums in picture coordinates of order 1e3
 
