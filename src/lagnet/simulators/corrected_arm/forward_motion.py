@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.simulators.arm_physics import ArmPhysics, BristleTerm
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, BristleTerm
 from lagnet.simulators.runtime.friction_impulse import friction_impulses
 from lagnet.types import JointVector
 

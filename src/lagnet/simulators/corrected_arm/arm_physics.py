@@ -19,7 +19,7 @@ from lagnet.models.corrected.changed_bodies import apply_to_bodies
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
-from lagnet.simulators.drive import Drive
+from lagnet.simulators.corrected_arm.drive import Drive
 from lagnet.types import JointVector
 
 IN_BODIES = ("payload", "link_inertia", "gravity_tilt")

@@ -16,12 +16,12 @@ import numpy as np
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
-from lagnet.simulators.arm_physics import ArmPhysics
-from lagnet.simulators.driven_arm import DrivenArm
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.driven_arm import DrivenArm
 from lagnet.simulators.engines.engine import Engine
 from lagnet.simulators.exporter import Exporter
-from lagnet.simulators.reference_cases import COMPANIONS, case_values
-from lagnet.simulators.tracking_control import TrackingControl, tracking
+from lagnet.simulators.round_trips.reference_cases import COMPANIONS, case_values
+from lagnet.simulators.round_trips.tracking_control import TrackingControl, tracking
 from lagnet.types import Trajectory
 
 RATE = 1000.0  # [Hz], of the controller

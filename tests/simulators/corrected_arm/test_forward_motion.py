@@ -9,10 +9,10 @@ from scipy.integrate import solve_ivp
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.simulators.arm_physics import ADDED, IN_BODIES, arm_physics
-from lagnet.simulators.drive import Drive
-from lagnet.simulators.forward_motion import ForwardMotion, dry_friction, joint_torque
-from lagnet.simulators.reference_cases import case_values
+from lagnet.simulators.corrected_arm.arm_physics import ADDED, IN_BODIES, arm_physics
+from lagnet.simulators.corrected_arm.drive import Drive
+from lagnet.simulators.corrected_arm.forward_motion import ForwardMotion, dry_friction, joint_torque
+from lagnet.simulators.round_trips.reference_cases import case_values
 
 ARM = random_arm(3, seed=5, kinds=("revolute",), fixed=False)
 SHARP = 1e-4  # [rad/s], blur of s(v) in the reference: far below the speeds at hand

@@ -12,11 +12,11 @@ import pytest
 
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
 from lagnet.simulators.engines.engine import Engine
 from lagnet.simulators.engines.registry import engine_of
 from lagnet.simulators.registry import EXPORTERS
-from lagnet.simulators.round_trip import case_of, control_of, engine_motion, reference_motion, size_of
+from lagnet.simulators.round_trips.round_trip import case_of, control_of, engine_motion, reference_motion, size_of
 
 ARM = random_arm(3, seed=5, kinds=("revolute",), fixed=False)
 SECONDS, STEP = 0.8, 2.5e-4

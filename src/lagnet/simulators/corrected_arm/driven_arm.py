@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.simulators.arm_physics import ArmPhysics
-from lagnet.simulators.forward_motion import ForwardMotion
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.forward_motion import ForwardMotion
 from lagnet.types import JointVector
 
 
