@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.models.serial_chain.lifting import gravity_direction
-from lagnet.models.serial_chain.separable import Descent, Samples
+from lagnet.models.serial_chain.identification.lifting import gravity_direction
+from lagnet.models.serial_chain.identification.separable import Descent, Samples
+from lagnet.models.serial_chain.identification.unknowns import Unknowns
 from lagnet.models.serial_chain.settings import STANDARD_GRAVITY, SearchSettings
-from lagnet.models.serial_chain.unknowns import Unknowns
 
 SAME_MINIMUM = 0.02  # relative difference of cost below which two starts are taken to have found the same minimum
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.models.serial_chain.refit import Refitted
-from lagnet.models.serial_chain.unknowns import Unknowns
+from lagnet.models.serial_chain.identification.refit import Refitted
+from lagnet.models.serial_chain.identification.unknowns import Unknowns
 
 WORSE = 1.05  # times what the freer model leaves: no more than chance makes of the same arm
 ROUNDING = 1e-13  # share of the torque that counts as nothing

@@ -15,10 +15,10 @@ import jax.numpy as jnp
 import numpy as np
 from scipy.linalg import block_diag, cho_factor, cho_solve
 
-from lagnet.models.serial_chain.inertia import from_standard, to_standard
-from lagnet.models.serial_chain.joint_terms import DISSIPATIVE_OR_MASSIVE
-from lagnet.models.serial_chain.separable import EMPTY, Samples, evaluate_at
-from lagnet.models.serial_chain.unknowns import Unknowns
+from lagnet.models.serial_chain.identification.separable import EMPTY, Samples, evaluate_at
+from lagnet.models.serial_chain.identification.unknowns import Unknowns
+from lagnet.models.serial_chain.mechanics.inertia import from_standard, to_standard
+from lagnet.models.serial_chain.mechanics.joint_terms import DISSIPATIVE_OR_MASSIVE
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import (
     from_log_cholesky,

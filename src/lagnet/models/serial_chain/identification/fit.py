@@ -15,14 +15,21 @@ import jax
 import numpy as np
 
 from lagnet.errors import ModelError
-from lagnet.models.serial_chain.determinacy import Determinacy, determinacy
-from lagnet.models.serial_chain.held_out import Data, as_good, held_out_share, residual, sizes, split_samples
-from lagnet.models.serial_chain.kinematics import revolute_mask
-from lagnet.models.serial_chain.refit import Refit, Refitted
-from lagnet.models.serial_chain.search import search_axes, search_lengths
-from lagnet.models.serial_chain.separable import Samples, make_samples
+from lagnet.models.serial_chain.identification.determinacy import Determinacy, determinacy
+from lagnet.models.serial_chain.identification.held_out import (
+    Data,
+    as_good,
+    held_out_share,
+    residual,
+    sizes,
+    split_samples,
+)
+from lagnet.models.serial_chain.identification.refit import Refit, Refitted
+from lagnet.models.serial_chain.identification.search import search_axes, search_lengths
+from lagnet.models.serial_chain.identification.separable import Samples, make_samples
+from lagnet.models.serial_chain.identification.unknowns import Unknowns, normalise_gravity
+from lagnet.models.serial_chain.mechanics.kinematics import revolute_mask
 from lagnet.models.serial_chain.settings import SLOW, SerialChainSettings
-from lagnet.models.serial_chain.unknowns import Unknowns, normalise_gravity
 
 PRECISION = 1e-7  # of a joint's torque: noise below this is not told from rounding, and weighs no more
 NO_TERM = 1e-9  # share of the torque that no joint term is asked for: a few steps more would bring links there

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from lagnet.models.serial_chain.inertia import regressor_to_standard
+from lagnet.models.serial_chain.mechanics.inertia import regressor_to_standard
 
 RANK = 1e-12  # of the largest eigenvalue, columns scaled to one: rounding leaves 1e-15, weak but real effects 1e-10
 TOUCHED = 1e-4  # share of a null vector, columns scaled to one, above which a constant can be traded

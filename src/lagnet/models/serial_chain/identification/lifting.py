@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from lagnet.models.serial_chain.kinematics import turning
+from lagnet.models.serial_chain.mechanics.kinematics import turning
 
 
 def lifted_regressor(angles: Array, revolute: tuple[bool, ...], q: Array, v: Array, a: Array) -> Array:

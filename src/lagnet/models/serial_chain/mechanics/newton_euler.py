@@ -12,8 +12,8 @@ import jax.numpy as jnp
 from jaxtyping import Array
 
 from lagnet.models.lagrangians.lagrangian import AbstractLagrangian, Matrix, Scalar, Vector
-from lagnet.models.serial_chain.inertia import COLUMNS, OFF_DIAGONAL, ROWS, pseudo_inertia
-from lagnet.models.serial_chain.kinematics import FrameMotion, Geometry, frame_jacobian, frame_motion
+from lagnet.models.serial_chain.mechanics.inertia import COLUMNS, OFF_DIAGONAL, ROWS, pseudo_inertia
+from lagnet.models.serial_chain.mechanics.kinematics import FrameMotion, Geometry, frame_jacobian, frame_motion
 
 
 class SerialArm(AbstractLagrangian):

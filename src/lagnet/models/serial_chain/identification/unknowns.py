@@ -10,10 +10,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
-from lagnet.models.serial_chain.joint_terms import joint_term_columns
-from lagnet.models.serial_chain.kinematics import Geometry
-from lagnet.models.serial_chain.lifting import lifted_regressor
-from lagnet.models.serial_chain.newton_euler import moment_regressor
+from lagnet.models.serial_chain.identification.lifting import lifted_regressor
+from lagnet.models.serial_chain.mechanics.joint_terms import joint_term_columns
+from lagnet.models.serial_chain.mechanics.kinematics import Geometry
+from lagnet.models.serial_chain.mechanics.newton_euler import moment_regressor
 from lagnet.models.serial_chain.settings import STANDARD_GRAVITY
 
 ORDINARY_LENGTH = 0.3  # [m]
