@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import RobotError
-from lagnet.plausibility.bodies import moving_bodies, reach
+from lagnet.plausibility.quantities.bodies import moving_bodies, reach
 from lagnet.plausibility.subject import Subject
 from lagnet.plausibility.suite import check
 from lagnet.rigid_body.descriptions.named_robots import named_robots
