@@ -15,9 +15,9 @@ from jaxtyping import Array
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.networks import OrderedNetwork
 from lagnet.training.cores import everywhere, mesh_for, on_one_device, spread
-from lagnet.training.loss import Errors, errors, penalised
+from lagnet.training.optimisation.loss import Errors, errors, penalised
+from lagnet.training.optimisation.soap import scale_by_soap
 from lagnet.training.settings import TrainingSettings
-from lagnet.training.soap import scale_by_soap
 
 CHUNK = 100  # steps compiled together; between chunks come reports, checkpoints and stopping
 LAST_SHARE = 1e-4  # learning rate at the end of the cosine, as a share of its peak

@@ -17,7 +17,7 @@ from jaxtyping import Array
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.training.checkpoint import read_checkpoint, write_checkpoint
 from lagnet.training.history import History, Report
-from lagnet.training.loop import CHUNK, JUDGED, Loop, LoopState, make_loop
+from lagnet.training.optimisation.loop import CHUNK, JUDGED, Loop, LoopState, make_loop
 from lagnet.training.samples import TrainingSamples
 from lagnet.training.settings import TrainingSettings
 
