@@ -11,8 +11,8 @@ from pathlib import Path
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.simulators.exporter import Exporter, Place
 from lagnet.simulators.measured import engine_versions, measured_errors
-from lagnet.simulators.reference_cases import CASES, case_values
 from lagnet.simulators.registry import EXPORTERS
+from lagnet.simulators.round_trips.reference_cases import CASES, case_values
 from marked_regions import DOCS, replaced, write_or_check
 
 COMMAND = "python docs/make_simulators.py"

@@ -14,11 +14,11 @@ from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.simulators.arm_physics import arm_physics
-from lagnet.simulators.driven_arm import DrivenArm
-from lagnet.simulators.reference_cases import case_values
-from lagnet.simulators.round_trip import smooth_motion
-from lagnet.simulators.tracking_control import tracking
+from lagnet.simulators.corrected_arm.arm_physics import arm_physics
+from lagnet.simulators.corrected_arm.driven_arm import DrivenArm
+from lagnet.simulators.round_trips.reference_cases import case_values
+from lagnet.simulators.round_trips.round_trip import smooth_motion
+from lagnet.simulators.round_trips.tracking_control import tracking
 
 pytestmark = pytest.mark.slow
 

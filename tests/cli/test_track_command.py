@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lagnet.cli.main import BAD_INPUT, main
-from lagnet.cli.progress import Bar
+from lagnet.cli.shared.progress import Bar
 
 
 def test_a_missing_manifest_is_one_line(tmp_path, capsys):

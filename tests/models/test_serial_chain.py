@@ -19,21 +19,21 @@ from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.files.loading import load_any
 from lagnet.models.lagrangians import euler_lagrange
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.serial_chain.fit import fit_serial_chain
-from lagnet.models.serial_chain.inertia import from_standard, pseudo_inertia, to_standard
-from lagnet.models.serial_chain.kinematics import Geometry, revolute_mask
-from lagnet.models.serial_chain.lifting import lifted_regressor
+from lagnet.models.serial_chain.identification.fit import fit_serial_chain
+from lagnet.models.serial_chain.identification.lifting import lifted_regressor
+from lagnet.models.serial_chain.identification.search import search_axes
+from lagnet.models.serial_chain.identification.separable import make_samples
+from lagnet.models.serial_chain.identification.unknowns import STANDARD_GRAVITY, Unknowns, normalise_gravity
+from lagnet.models.serial_chain.mechanics.inertia import from_standard, pseudo_inertia, to_standard
+from lagnet.models.serial_chain.mechanics.kinematics import Geometry, revolute_mask
+from lagnet.models.serial_chain.mechanics.newton_euler import SerialArm, moment_regressor
 from lagnet.models.serial_chain.model import SerialChain, learn_serial_chain, load_serial_chain
-from lagnet.models.serial_chain.newton_euler import SerialArm, moment_regressor
 from lagnet.models.serial_chain.reversals import sharpen_reversals
-from lagnet.models.serial_chain.search import search_axes
-from lagnet.models.serial_chain.separable import make_samples
 from lagnet.models.serial_chain.settings import SearchSettings, SerialChainSettings
-from lagnet.models.serial_chain.unknowns import STANDARD_GRAVITY, Unknowns, normalise_gravity
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.xml_files import checked_xml
 from lagnet.types import InverseDynamics
 
 pytestmark = pytest.mark.slow

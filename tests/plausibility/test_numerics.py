@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.plausibility import derivatives
 from lagnet.plausibility.motions import DURATION, dimension, motions
+from lagnet.plausibility.quantities import derivatives
 from lagnet.plausibility.search import worst_point
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.plausibility.subject import Subject

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from markupsafe import Markup
 
-from lagnet.reports.figures import Figure, axis, colour, names_axis, packed, plain
+from lagnet.reports.figures.figure import Figure, axis, colour, names_axis, packed, plain
 from lagnet.reports.page import Section, json_for_script, page, write_page
 
 HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)>"

@@ -13,8 +13,8 @@ import pinocchio as pin
 import pytest
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.descriptions.named_robots import HELD_JOINTS, named_robot_path, named_robots
 from lagnet.rigid_body.inertia import is_physically_consistent, principal_moments
-from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import load_description
 from lagnet.types import InverseDynamics

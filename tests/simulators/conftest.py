@@ -7,8 +7,8 @@ import pytest
 
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
-from lagnet.simulators.reference_cases import case_values
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.round_trips.reference_cases import case_values
 
 ARM = random_arm(3, seed=5, kinds=("revolute",), fixed=False)
 LACKED = (

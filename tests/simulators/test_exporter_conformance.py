@@ -11,11 +11,11 @@ import pytest
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.errors import LagnetError, ModelError
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
-from lagnet.simulators.arm_physics import arm_physics
+from lagnet.simulators.corrected_arm.arm_physics import arm_physics
 from lagnet.simulators.export import export_model, write_export_json
 from lagnet.simulators.measured import measured_errors
-from lagnet.simulators.reference_cases import CASES, case_values
 from lagnet.simulators.registry import EXPORTERS, exporter_named
+from lagnet.simulators.round_trips.reference_cases import CASES, case_values
 
 LASTING = {name for name, law in CATALOGUE.items() if not law.passing}
 EXACT = 0.01  # of an effect's own contribution, the pass line of validation/round_trip

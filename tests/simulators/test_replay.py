@@ -8,9 +8,9 @@ import pytest
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.simulators.arm_physics import arm_physics
 from lagnet.simulators.before_after import TABLE_RATE, BeforeAfter, before_and_after, columns_of
-from lagnet.simulators.driven_arm import DrivenArm
+from lagnet.simulators.corrected_arm.arm_physics import arm_physics
+from lagnet.simulators.corrected_arm.driven_arm import DrivenArm
 from lagnet.simulators.replay import ReplaySettings, Servo
 
 ARM = random_arm(2, seed=3, kinds=("revolute",), fixed=False)

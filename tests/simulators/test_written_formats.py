@@ -11,7 +11,7 @@ import pinocchio as pin
 import pytest
 
 from lagnet.models.corrected.model import CorrectedModel
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.engines.registry import engine_of
 from lagnet.simulators.registry import EXPORTERS
 from lagnet.simulators.runtime.run_mujoco import CorrectedArm as MujocoArm
@@ -156,8 +156,8 @@ def test_isaac_lab_settings_hold_the_values(physics: ArmPhysics, tmp_path: Path)
 
 
 def test_a_late_read_out_of_torque_is_late_in_mujoco(tmp_path: Path, corrected: CorrectedModel) -> None:
-    from lagnet.simulators.arm_physics import arm_physics
-    from lagnet.simulators.round_trip import case_of, control_of
+    from lagnet.simulators.corrected_arm.arm_physics import arm_physics
+    from lagnet.simulators.round_trips.round_trip import case_of, control_of
 
     robot = corrected.nominal
     arm = arm_physics(case_of(robot, "time_delay", 1, T=0.02))

@@ -19,10 +19,10 @@ from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.models.scales import fit_scales
 from lagnet.recordings.recording import Recording
 from lagnet.training.checkpoint import read_checkpoint, write_checkpoint
-from lagnet.training.loss import Errors, errors, penalised
+from lagnet.training.optimisation.loss import Errors, errors, penalised
+from lagnet.training.optimisation.soap import scale_by_soap
 from lagnet.training.samples import samples_of
 from lagnet.training.settings import TrainingSettings
-from lagnet.training.soap import scale_by_soap
 from lagnet.training.train import train
 
 pytestmark = pytest.mark.slow
@@ -73,7 +73,7 @@ class Killed(Exception):
 
 
 def test_a_killed_training_resumes_to_the_same_weights(fitted, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagnet.training.fit.CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr("lagnet.training.optimisation.fit.CHECKPOINT_EVERY", 0.0)
     path = tmp_path / "run.npz"
 
     def dies_late(report: Any) -> None:

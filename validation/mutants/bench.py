@@ -10,10 +10,10 @@ import numpy as np
 
 from lagnet.plausibility.settings import CheckSettings
 from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.xml_files import checked_xml
 
 JOINTS, SEED = 3, 11
 SKEW = np.array([[0.0, 1.0, -0.5], [-1.0, 0.0, 0.8], [0.5, -0.8, 0.0]])

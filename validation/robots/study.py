@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import RobotError
-from lagnet.plausibility.bodies import moving_bodies, reach
+from lagnet.plausibility.quantities.bodies import moving_bodies, reach
 from lagnet.plausibility.subject import Subject
 from lagnet.plausibility.suite import check
-from lagnet.rigid_body.named_robots import named_robots
+from lagnet.rigid_body.descriptions.named_robots import named_robots
 from lagnet.rigid_body.robot import Robot, load_description
 
 HERE = Path(__file__).resolve().parent

@@ -17,13 +17,20 @@ from pathlib import Path
 from lagnet.effects.catalogue import effect_named
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import Robot
-from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
 from lagnet.simulators.engines.engine import Engine
 from lagnet.simulators.engines.registry import engine_of
-from lagnet.simulators.reference_cases import CASES, COMPANIONS
 from lagnet.simulators.registry import EXPORTERS
-from lagnet.simulators.round_trip import case_of, companions_of, control_of, engine_motion, reference_motion, size_of
-from lagnet.simulators.tracking_control import TrackingControl
+from lagnet.simulators.round_trips.reference_cases import CASES, COMPANIONS
+from lagnet.simulators.round_trips.round_trip import (
+    case_of,
+    companions_of,
+    control_of,
+    engine_motion,
+    reference_motion,
+    size_of,
+)
+from lagnet.simulators.round_trips.tracking_control import TrackingControl
 from lagnet.types import Trajectory
 
 HERE = Path(__file__).resolve().parent

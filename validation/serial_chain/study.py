@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import scipy.io
 
-from lagnet.models.serial_chain.joint_terms import JOINT_TERMS
+from lagnet.models.serial_chain.mechanics.joint_terms import JOINT_TERMS
 from lagnet.models.serial_chain.model import learn_serial_chain
 from lagnet.models.serial_chain.settings import SearchSettings, SerialChainSettings
 from lagnet.rigid_body.random_arm import random_arm

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, load_models
+from lagnet.cli.shared.robots import HELP, load_models
 from lagnet.errors import LagnetError
 
 
@@ -39,7 +39,7 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 0,
 ) -> None:
     """Hold a model or robot against physics; exit code 1 when a check fails."""
-    from lagnet.cli.console import not_negative
+    from lagnet.cli.shared.console import not_negative
     from lagnet.plausibility.settings import CheckSettings
     from lagnet.plausibility.suite import check
     from lagnet.recordings.loading.load import load_recording

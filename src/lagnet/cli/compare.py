@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, load_models
+from lagnet.cli.shared.robots import HELP, load_models
 
 
 def command(
@@ -24,7 +24,7 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
 ) -> None:
     """Say which of several parameter sets explains recordings better, joint by joint."""
-    from lagnet.cli.console import numbers, say
+    from lagnet.cli.shared.console import numbers, say
     from lagnet.comparison.compare import compare, write_comparison
     from lagnet.recordings.loading.load import load_recording
 

@@ -47,8 +47,8 @@ def inspect_log(
     out: Path | None = typer.Option(None, help="Mapping file to write; else FILE's name with .columns.toml."),
 ) -> None:
     """Say what a log holds, what its effort column most likely is, and write the mapping file to edit."""
-    from lagnet.cli.console import say
-    from lagnet.cli.inspection import inspect_file
+    from lagnet.cli.parts.inspection import inspect_file
+    from lagnet.cli.shared.console import say
 
     lines, text = inspect_file(file, robot, columns, _show if sys.stderr.isatty() else None)
     for line in lines:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, load_models
+from lagnet.cli.shared.robots import HELP, load_models
 
 
 def command(
@@ -32,7 +32,7 @@ def command(
     seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
 ) -> None:
     """Split the torque into inertial, Coriolis, gravity and residual parts."""
-    from lagnet.cli.console import say
+    from lagnet.cli.shared.console import say
     from lagnet.decomposition.decompose import decompose
     from lagnet.decomposition.writing import write_decomposition
     from lagnet.recordings.loading.load import load_recording

@@ -16,10 +16,10 @@ def command(
     route: Annotated[str, typer.Option(help="torque, or motion: recordings of commands and positions.")] = "torque",
 ) -> None:
     """Hide an effect in a simulated arm, diagnose it, open the envelope and compare."""
-    from lagnet.cli.console import say
-    from lagnet.cli.envelope import say_opened, seal
-    from lagnet.cli.motion import check_route
-    from lagnet.cli.motion_demo import demonstrate_on_motion
+    from lagnet.cli.parts.envelope import say_opened, seal
+    from lagnet.cli.parts.motion import check_route
+    from lagnet.cli.parts.motion_demo import demonstrate_on_motion
+    from lagnet.cli.shared.console import say
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.writing import write_diagnosis
     from lagnet.models.files.loading import load_any

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, load_models
+from lagnet.cli.shared.robots import HELP, load_models
 from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
@@ -74,10 +74,10 @@ def command(
         )
     if simulated and hold:
         raise LagnetError("--hold holds joints of --robot; a simulator's recordings have those that they have")
-    from lagnet.cli.console import above_zero, not_negative, numbers, say
-    from lagnet.cli.motion import diagnose_on_motion, route_of
-    from lagnet.cli.replayed import replay_held_out, replay_settings
-    from lagnet.cli.simulated import nominal_from
+    from lagnet.cli.parts.motion import diagnose_on_motion, route_of
+    from lagnet.cli.parts.replayed import replay_held_out, replay_settings
+    from lagnet.cli.parts.simulated import nominal_from
+    from lagnet.cli.shared.console import above_zero, not_negative, numbers, say
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.nominal.log_alignment import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
@@ -108,7 +108,7 @@ def command(
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     write_diagnosis(result, out)
     if mcap:
-        from lagnet.cli.mcap import write_mcap_of
+        from lagnet.cli.parts.mcap import write_mcap_of
 
         say(f"MCAP: {write_mcap_of(result, mcap)}")
     evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
@@ -131,7 +131,7 @@ def command(
 
 def _suggest(result: Diagnosis, out: Path, seed: int) -> None:
     """Searches the motion to record next and writes it beside the verdict."""
-    from lagnet.cli.console import say
+    from lagnet.cli.shared.console import say
     from lagnet.experiment_design.suggest_motion import suggest_motion
     from lagnet.experiment_design.writing import MOTION, words_of, write_suggestion
 

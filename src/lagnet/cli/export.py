@@ -26,8 +26,8 @@ def command(
     kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
-    from lagnet.cli.console import say
-    from lagnet.cli.replay import servo_of
+    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.replays import servo_of
     from lagnet.models.files.loading import load_any
     from lagnet.recordings.loading.load import load_recording
     from lagnet.simulators.before_after import verify as verified_by

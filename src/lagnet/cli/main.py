@@ -4,7 +4,7 @@ Exit codes: 0 done; 1 a check that the user asked for failed (`raise typer.Exit(
 3 interrupted; 70 a fault of lagnet itself, with its trace.
 
 A subcommand is one file `lagnet/cli/NAME.py` that holds either `command`, a function with typer annotations, or `app`,
-a `typer.Typer` with subcommands of its own, plus one line in `COMMANDS`.
+a `typer.Typer` with subcommands of its own, plus one line in `COMMANDS`; its helpers stand in `parts` and `shared`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from lagnet.cli.many_values import repeat_options
+from lagnet.cli.shared.many_values import repeat_options
 from lagnet.errors import LagnetError
 
 COMMANDS = {

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, load_models
+from lagnet.cli.shared.robots import HELP, load_models
 from lagnet.errors import LagnetError
-
-if TYPE_CHECKING:
-    from lagnet.simulators.before_after import BeforeAfter
-    from lagnet.simulators.replay import Servo
 
 
 def command(
@@ -32,7 +28,8 @@ def command(
     """Run recordings through a model in an engine, before and after correction."""
     if tolerance <= 0 or longest <= 0:
         raise LagnetError("the tolerance and the length to replay are above zero", where="--tolerance, --longest")
-    from lagnet.cli.console import say
+    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.replays import say_replay, servo_of
     from lagnet.recordings.loading.load import load_recording
     from lagnet.reports.replay_report import write_replay_report
     from lagnet.simulators.before_after import before_and_after, write_replay
@@ -46,36 +43,3 @@ def command(
     page = write_replay_report(summary, table, out / "report.html")
     say_replay(result)
     say(f"report: {page}")
-
-
-def say_replay(result: BeforeAfter) -> None:
-    """Errors by joint and horizons, a line each."""
-    from lagnet.cli.console import say
-
-    before, after = result.before, result.after
-    for i, joint in enumerate(result.joints):
-        mended = "" if after is None else f" before, {after.rmse()[i]:.3g} after"
-        say(f"{joint}: error {before.rmse()[i]:.3g} {result.units[i]}{mended}")
-    if before.horizon is None:
-        return
-    drive = "commands" if before.runs[0].commanded else "torques"
-    unit = " or ".join(sorted(set(result.units), reverse=True))
-    mended = "" if after is None or after.horizon is None else f" before, {after.horizon.median:.2f} s after"
-    within = f"{before.settings.tolerance:g} {unit}"
-    say(f"{drive} alone stay within {within} for {before.horizon.median:.2f} s{mended} (median)")
-
-
-def servo_of(kp: str | None, kd: str | None) -> Servo | None:
-    """Gains of a position controller, or None where none are given.
-
-    Raises:
-        LagnetError: only one of the two.
-    """
-    from lagnet.cli.console import numbers
-    from lagnet.simulators.replay import Servo
-
-    if (kp is None) != (kd is None):
-        raise LagnetError("a servo has both gains", where="--kp, --kd", next_step="give both, comma-separated")
-    if kp is None or kd is None:
-        return None
-    return Servo(tuple(numbers(kp, "--kp")), tuple(numbers(kd, "--kd")))

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.robots import HELP, held_joints
+from lagnet.cli.shared.robots import HELP, held_joints
 
 
 def command(
@@ -33,7 +33,7 @@ def command(
     ] = None,
 ) -> None:
     """Move a robot under torque control, with known effects added, and write recordings; the truth is kept apart."""
-    from lagnet.cli.console import above_zero, not_negative, say
+    from lagnet.cli.shared.console import above_zero, not_negative, say
     from lagnet.recordings.loading.load import load_recording
     from lagnet.rigid_body.robot import load_description
     from lagnet.simulation.effects_file import read_effects

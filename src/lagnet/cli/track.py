@@ -24,8 +24,8 @@ def command(
     memory: Annotated[float, typer.Option(min=0.2, help="Memory of each process of this machine [GB].")] = 1.5,
 ) -> None:
     """Follow the physics of robots over time: what changed, when, and whether temperature and load explain it."""
-    from lagnet.cli.console import say
-    from lagnet.cli.progress import Bar
+    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.progress import Bar
     from lagnet.reports.fleet_report import write_fleet_report
     from lagnet.tracking.engine import EngineSettings
     from lagnet.tracking.fleet_pages import fleet_of

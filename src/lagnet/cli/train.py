@@ -42,7 +42,7 @@ def command(
     ] = None,
 ) -> None:
     """Learn a dynamics model from recordings; a killed run goes on where it was when called again."""
-    from lagnet.cli.console import above_zero, not_negative, say
+    from lagnet.cli.shared.console import above_zero, not_negative, say
     from lagnet.recordings.loading.load import load_recording
     from lagnet.training.cores import let_jax_see_cores
     from lagnet.training.stages import stage_files

@@ -17,8 +17,8 @@ from lagnet.errors import LagnetError
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.writing import write_text
 
 DRAWS = 2000
 LEVEL = (2.5, 97.5)  # percentiles of an interval

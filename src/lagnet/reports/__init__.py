@@ -1,5 +1,5 @@
 """What a person reads: self-contained HTML pages of a diagnosis, a decomposition or a check.
 
-`page` binds sections to one file, `figures` says what a plot is, `wording` how numbers are put; a `…_report` module
-holds the sections of one kind of page.
+`contents` is what a page is made from, `sections` its parts, `figures` its plots; `wording` says how numbers are put,
+`page` binds sections to one file; a `…_report` module holds the sections of one kind of page.
 """

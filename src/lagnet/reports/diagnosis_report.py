@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.diagnosis.verdict.report_data import ReportData
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.contents.replay_data import ReplayData
 from lagnet.reports.page import Section, write_page
-from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.sections import (
     abstentions,
     arm,

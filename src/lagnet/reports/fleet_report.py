@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from lagnet.reports.fleet import Fleet
+from lagnet.reports.contents.fleet import Fleet
 from lagnet.reports.page import write_page
 from lagnet.reports.sections import fleet_changes, fleet_headline, fleet_robots, fleet_timeline
 from lagnet.reports.sections.fleet_data import page_data

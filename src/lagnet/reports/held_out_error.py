@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import Any
 
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.sections.fit import layers_of
 from lagnet.reports.wording import percent
 

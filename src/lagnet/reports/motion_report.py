@@ -8,7 +8,7 @@ from typing import Any
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.verdict.report_data import ReportData
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.page import Section, write_page
 from lagnet.reports.sections import (
     abstentions,

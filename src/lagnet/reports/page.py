@@ -21,7 +21,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from lagnet.files import write_whole
-from lagnet.reports.figures import Figure
+from lagnet.reports.figures.figure import Figure
 from lagnet.reports.wording import FILTERS
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 
+from lagnet.reports.contents.replay_data import ReplayData
 from lagnet.reports.page import write_page
-from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.sections import your_simulator
 from lagnet.reports.wording import counted
 

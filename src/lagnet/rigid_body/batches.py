@@ -14,6 +14,21 @@ from lagnet.rigid_body.untyped_pinocchio import Model, pin
 TIP_WRENCH = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
+def as_rows(n_dof: int, **arrays: np.ndarray) -> list[np.ndarray]:
+    """Arrays as contiguous float64 of one shape (n, dof).
+
+    Raises:
+        ValueError: an array has another shape; it is called by its name.
+    """
+    found = {name: np.ascontiguousarray(array, dtype=np.float64) for name, array in arrays.items()}
+    n = len(next(iter(found.values()))) if next(iter(found.values())).ndim else 0
+    for name, array in found.items():
+        if array.shape != (n, n_dof):
+            expected = f"(n_samples, {n_dof})" if array.ndim != 2 else f"({n}, {n_dof})"
+            raise ValueError(f"{name} has shape {array.shape}, expected {expected}: one row a sample")
+    return list(found.values())
+
+
 def inverse_dynamics(model: Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
     """Recursive Newton–Euler, shape (n, dof); the loop over samples is Pinocchio's own, on one thread."""
     if not len(q):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.rigid_body.writing import axis
+from lagnet.rigid_body.descriptions.writing import axis
 
 
 @dataclass(frozen=True, eq=False)

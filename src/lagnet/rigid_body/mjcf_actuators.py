@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from xml.etree.ElementTree import Element
 
 from lagnet.errors import RobotError
+from lagnet.rigid_body.descriptions.urdf_checks import numbers
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf_checks import numbers
 
 TAGS = ("position", "general")
 Defaults = dict[str, dict[str, dict[str, str]]]  # class → tag → attributes

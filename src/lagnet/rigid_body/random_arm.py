@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.xml_files import checked_xml
 
 POINTS = 8  # point masses a link: more than the four that make a body of full rank
 

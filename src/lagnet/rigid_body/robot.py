@@ -9,17 +9,13 @@ from typing import Any, final
 
 import numpy as np
 
-from lagnet.errors import RobotError
-from lagnet.rigid_body import batches
+from lagnet.rigid_body import batches, pinocchio_models
 from lagnet.rigid_body.body_tree import TreeBody, tree_of
-from lagnet.rigid_body.description import NONE_HELD, Description
-from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
-from lagnet.rigid_body.mjcf import read_mjcf
-from lagnet.rigid_body.named_robots import HELD_JOINTS, named_robot_path, named_robots
-from lagnet.rigid_body.untyped_pinocchio import Data, Inertia, Model, pin
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
-from lagnet.rigid_body.xml_files import read_xml
+from lagnet.rigid_body.descriptions.description import NONE_HELD, Description
+from lagnet.rigid_body.descriptions.reading import read_description
+from lagnet.rigid_body.descriptions.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
+from lagnet.rigid_body.inertia import parameters_of_body
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
 
@@ -35,15 +31,7 @@ def load_description(spec: str | Path, held: Mapping[str, float] = NONE_HELD) ->
     Raises:
         RobotError: unknown name, unreadable file, or not a fixed-base arm of one-degree-of-freedom joints.
     """
-    path, text = Path(spec), str(spec)
-    looks_like_a_path = isinstance(spec, Path) or path.suffix != "" or len(path.parts) > 1
-    if not looks_like_a_path and (text in named_robots() or not path.exists()):  # a folder "ur5" does not hide the UR-5
-        file = read_xml(named_robot_path(text))
-        return Robot(read_urdf(file, "named_robot", text, {**dict.fromkeys(HELD_JOINTS.get(text, ()), 0.0), **held}))
-    if path.suffix.lower() == ".xacro":
-        raise RobotError("is a xacro file", where=text, next_step="run xacro on it first")
-    file = read_xml(path)
-    return Robot(read_mjcf(file, held) if file.root().tag == "mujoco" else read_urdf(file, held=held))
+    return Robot(read_description(spec, held))
 
 
 @final
@@ -69,16 +57,16 @@ class Robot:
     def __init__(self, description: Description):
         self._description, self._model = description, description.model
         model = self._model
-        self._weightless = _with_gravity(model, np.zeros(3))
+        self._weightless = pinocchio_models.with_gravity(model, np.zeros(3))
         self.joints: tuple[str, ...] = tuple(model.names[1:])
         self.joint_types, self.links = description.joint_types, description.links
         self.parents: tuple[int, ...] = tuple(int(model.parents[i]) - 1 for i in range(1, model.njoints))
-        self.position_lower = _limit(model.lowerPositionLimit)
-        self.position_upper = _limit(model.upperPositionLimit)
-        self.velocity_limit = _limit(model.upperVelocityLimit)
-        self.effort_limit = _limit(model.upperEffortLimit)
-        self.armature = _frozen(model.armature)
-        self.gravity = _frozen(model.gravity.linear)
+        self.position_lower = pinocchio_models.limit(model.lowerPositionLimit)
+        self.position_upper = pinocchio_models.limit(model.upperPositionLimit)
+        self.velocity_limit = pinocchio_models.limit(model.upperVelocityLimit)
+        self.effort_limit = pinocchio_models.limit(model.upperEffortLimit)
+        self.armature = pinocchio_models.frozen(model.armature)
+        self.gravity = pinocchio_models.frozen(model.gravity.linear)
         self.kind, self.source, self.sha256 = description.kind, description.source, description.file.sha256
         self.link_inertials, self.warnings = description.link_inertials, description.warnings
 
@@ -86,7 +74,7 @@ class Robot:
         return f"Robot({self.source!r}, {self.n_dof} joints: {', '.join(self.joints)})"
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Robot:
-        return Robot(replace(self._description, model=self._model.copy()))
+        return self._with(self._model.copy())
 
     @property
     def n_dof(self) -> int:
@@ -153,7 +141,7 @@ class Robot:
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """Holding torque per unit of each component of the gravity vector, shape (n, dof, 3), [N m s²/m]."""
         (q,) = self._batch(q=q)
-        fields = [batches.gravity_torque(_with_gravity(self._model, unit), q) for unit in np.eye(3)]
+        fields = [batches.gravity_torque(pinocchio_models.with_gravity(self._model, unit), q) for unit in np.eye(3)]
         return np.stack(fields, axis=2)
 
     def wrench_regressor(self, q: Trajectory, joint: int = -1) -> np.ndarray:
@@ -162,7 +150,7 @@ class Robot:
         Columns: force x, y, z [N], moment x, y, z [N m], in the axes of the base, acting at the tip (joint -1) or at
         the origin of a joint's frame. It is -Jᵀ: a hand that is pushed down (F_z < 0) asks for more lift.
         """
-        frame = self._tip_frame() if joint == -1 else self._joint_frame(joint)
+        frame = pinocchio_models.tip_frame(self._model) if joint == -1 else self._joint_frame(joint)
         return -batches.tip_jacobian(self._model, frame, *self._batch(q=q)).transpose(0, 2, 1)
 
     def orientation(self, q: Trajectory, joint: int = -1) -> np.ndarray:
@@ -171,46 +159,32 @@ class Robot:
 
     def skeleton(self, q: JointVector) -> np.ndarray:
         """Points to draw the arm in one pose: base, origin of each joint, tip; shape (dof + 2, 3), [m]."""
-        data = self._placed(q)
+        data = pinocchio_models.placed(self._model, q)
         origins = [data.oMi[i].translation for i in range(1, self._model.njoints)]
-        return np.array([np.zeros(3), *origins, data.oMf[self._tip_frame()].translation])
+        return np.array([np.zeros(3), *origins, data.oMf[pinocchio_models.tip_frame(self._model)].translation])
 
     def joint_axes(self, q: JointVector) -> np.ndarray:
         """Unit axis of each joint in one pose, in the axes of the base, shape (dof, 3)."""
-        data = self._placed(q)
+        data = pinocchio_models.placed(self._model, q)
         jacobian = data.J.reshape(6, self.n_dof)
         axes = [jacobian[0:3, i] if t == "prismatic" else jacobian[3:6, i] for i, t in enumerate(self.joint_types)]
         return np.array(axes)
 
     def inertial_parameters(self) -> np.ndarray:
         """Ten parameters of the body behind each joint, in the order of the regressor, shape (dof, 10)."""
-        return np.array([_parameters(self._model.inertias[i]) for i in range(1, self._model.njoints)])
+        return pinocchio_models.inertial_parameters(self._model)
 
     def with_inertial_parameters(self, parameters: np.ndarray) -> Robot:
         """The same arm with other bodies; parameters of shape (dof, 10) in the order of the regressor."""
-        parameters = np.asarray(parameters, dtype=float)
-        if parameters.shape != (self.n_dof, 10):
-            raise ValueError(f"parameters have shape {parameters.shape}, expected ({self.n_dof}, 10)")
-        model = self._model.copy()
-        for i, row in enumerate(parameters):
-            model.inertias[i + 1] = _inertia(row)
-        return Robot(replace(self._description, model=model))
+        return self._with(pinocchio_models.with_inertial_parameters(self._model, parameters))
 
     def with_gravity(self, gravity: np.ndarray) -> Robot:
         """The same arm mounted otherwise; gravity of shape (3,) in the frame of the base [m/s²]."""
-        gravity = np.asarray(gravity, dtype=float)
-        if gravity.shape != (3,):
-            raise ValueError(f"gravity has shape {gravity.shape}, expected (3,)")
-        return Robot(replace(self._description, model=_with_gravity(self._model, gravity)))
+        return self._with(pinocchio_models.with_gravity(self._model, gravity))
 
     def with_armature(self, armature: np.ndarray) -> Robot:
         """The same arm with other rotors; armature of shape (dof,), inertia felt at each joint [kg m²]."""
-        armature = np.asarray(armature, dtype=float)
-        if armature.shape != (self.n_dof,):
-            raise ValueError(f"armature has shape {armature.shape}, expected ({self.n_dof},)")
-        model = self._model.copy()
-        model.armature = armature
-        return Robot(replace(self._description, model=model))
+        return self._with(pinocchio_models.with_armature(self._model, armature))
 
     def body_tree(self) -> tuple[TreeBody, ...]:
         """The moving bodies with their joints as plain numbers, from the base outwards."""
@@ -252,70 +226,17 @@ class Robot:
         """Writes the arm as plain MJCF: bodies, joints with limits, inertials, gravity."""
         write_text(Path(path), mjcf_text(self._description))
 
+    def _with(self, model: Model) -> Robot:
+        return Robot(replace(self._description, model=model))
+
     def _batch(self, **arrays: np.ndarray) -> list[np.ndarray]:
         """Arrays as float64 of one shape (n, dof)."""
-        found = {name: np.ascontiguousarray(array, dtype=np.float64) for name, array in arrays.items()}
-        n = len(next(iter(found.values()))) if next(iter(found.values())).ndim else 0
-        for name, array in found.items():
-            if array.shape != (n, self.n_dof):
-                expected = f"(n_samples, {self.n_dof})" if array.ndim != 2 else f"({n}, {self.n_dof})"
-                raise ValueError(f"{name} has shape {array.shape}, expected {expected}: one row a sample")
-        return list(found.values())
+        return batches.as_rows(self.n_dof, **arrays)
 
     def _joint(self, joint: int) -> int:
         if not -self.n_dof <= joint < self.n_dof:
             raise ValueError(f"joint is {joint}, expected 0 to {self.n_dof - 1} ({', '.join(self.joints)})")
         return joint % self.n_dof
 
-    def _placed(self, q: JointVector) -> Data:
-        q = np.asarray(q, dtype=float)
-        if q.shape != (self.n_dof,):
-            raise ValueError(f"q has shape {q.shape}, expected ({self.n_dof},): one pose")
-        data = self._model.createData()
-        pin.computeJointJacobians(self._model, data, q)
-        pin.updateFramePlacements(self._model, data)
-        return data
-
     def _joint_frame(self, joint: int) -> int:
         return self._model.getFrameId(self.joints[self._joint(joint)], pin.FrameType.JOINT)
-
-    def _tip_frame(self) -> int:
-        """The frame on the last joint's body that lies farthest from it: a flange or tool frame where there is one."""
-        last = self._model.njoints - 1
-        own = [i for i, frame in enumerate(self._model.frames) if frame.parentJoint == last]
-        return max(own, key=lambda i: round(float(np.linalg.norm(self._model.frames[i].placement.translation)), 9))
-
-
-def _limit(values: np.ndarray) -> np.ndarray:
-    values = np.array(values, dtype=float)
-    values[np.abs(values) > 1e100] *= np.inf
-    return _frozen(values)
-
-
-def _frozen(values: np.ndarray) -> np.ndarray:
-    values = np.array(values, dtype=float)
-    values.setflags(write=False)
-    return values
-
-
-def _with_gravity(model: Model, gravity: np.ndarray) -> Model:
-    model = model.copy()
-    model.gravity.linear = np.asarray(gravity, dtype=float)
-    return model
-
-
-def _parameters(body: Inertia) -> np.ndarray:
-    return parameters_of_body(body.mass, np.array(body.lever), np.array(body.inertia))
-
-
-def _inertia(row: np.ndarray) -> Inertia:
-    """A body from ten parameters.
-
-    Raises:
-        ValueError: first moment without mass, which no body has and Pinocchio cannot hold.
-    """
-    if row[0] == 0.0:
-        if row[1:4].any():
-            raise ValueError("a body of zero mass has a first moment; give it a mass")
-        return pin.Inertia(0.0, np.zeros(3), tensor_about_origin(row))
-    return pin.Inertia(float(row[0]), row[1:4] / row[0], tensor_about_com(row))

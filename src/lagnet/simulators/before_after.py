@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.writing import write_text
 from lagnet.simulators.replay import Replay, ReplaySettings, bare_robot, replay, replay_reference
 
 JSON, TABLE = "replay.json", "replay.parquet"

@@ -11,9 +11,9 @@ from typing import Any
 from lagnet._version import __version__
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.writing import write_text
-from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
 from lagnet.simulators.exporter import Exporter, Place
 from lagnet.simulators.measured import measured_errors
 

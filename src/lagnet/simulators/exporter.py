@@ -10,7 +10,7 @@ from typing import ClassVar, Literal
 
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 
 Status = Literal["exact", "approximate", "not_representable"]
 

@@ -12,7 +12,7 @@ from lagnet.errors import LagnetError
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.robot import Robot
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.types import JointVector, Samples, Trajectory
 
 if TYPE_CHECKING:

@@ -22,8 +22,8 @@ from lagnet.errors import LagnetError
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.robot import Robot
-from lagnet.simulators.arm_physics import ArmPhysics, arm_physics
-from lagnet.simulators.driven_arm import DrivenArm
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
+from lagnet.simulators.corrected_arm.driven_arm import DrivenArm
 from lagnet.simulators.engines.engine import Engine
 from lagnet.simulators.engines.registry import ENGINES, FORMAT, engine_of
 from lagnet.simulators.recorded_drive import RecordedDrive, recorded_drives

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.rigid_body.writing import write_text
-from lagnet.simulators.arm_physics import ArmPhysics
-from lagnet.simulators.forward_motion import motor_inertia
+from lagnet.rigid_body.descriptions.writing import write_text
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.forward_motion import motor_inertia
 from lagnet.simulators.urdf_text import BODY_SHARE
 
 SETTINGS = "settings.json"

@@ -10,8 +10,8 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lagnet.simulators.arm_physics import ArmPhysics
-from lagnet.simulators.forward_motion import motor_inertia
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.forward_motion import motor_inertia
 from lagnet.simulators.xml_text import number, numbers, roll_pitch_yaw
 
 MOTOR, LINK = "_motor", "_link"  # endings of names between motor and link

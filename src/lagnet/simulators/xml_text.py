@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lagnet.rigid_body.writing import write_text
+from lagnet.rigid_body.descriptions.writing import write_text
 
 
 def number(value: float) -> str:

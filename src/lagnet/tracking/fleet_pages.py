@@ -6,7 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from lagnet.reports.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
+from lagnet.reports.contents.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
 from lagnet.tracking.statistics.analyse import Standing
 from lagnet.tracking.tables import TrackRow
 from lagnet.tracking.track import Track

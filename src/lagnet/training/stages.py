@@ -22,8 +22,8 @@ from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.lagrangians.massless import Massless
 from lagnet.models.residuals.augmented import Augmented
 from lagnet.models.residuals.body_drag import Dragged
-from lagnet.training.fit import BorneOut, Fitted, Task, fit
 from lagnet.training.held_out_share import shares
+from lagnet.training.optimisation.fit import BorneOut, Fitted, Task, fit
 from lagnet.training.samples import TrainingSamples
 from lagnet.types import Trajectory
 

@@ -24,8 +24,8 @@ from lagnet.recordings.splits import holdout_split
 from lagnet.training import serial_chain
 from lagnet.training.checkpoint import fingerprint
 from lagnet.training.cores import parts_of
-from lagnet.training.fit import Fitted, Task, fit
 from lagnet.training.history import History, Report
+from lagnet.training.optimisation.fit import Fitted, Task, fit
 from lagnet.training.samples import TrainingSamples, samples_of
 from lagnet.training.settings import PENALTIES, TrainingSettings
 from lagnet.training.stages import as_borne_out, in_stages

@@ -9,9 +9,9 @@ from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.nominal.axis_offsets import settle_axis_offsets
 from lagnet.models.serial_chain.model import SerialChain, learn_serial_chain
 from lagnet.models.serial_chain.open_shape import OpenShape
+from lagnet.rigid_body.descriptions.urdf import read_urdf
+from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.robot import Robot
-from lagnet.rigid_body.urdf import read_urdf
-from lagnet.rigid_body.xml_files import checked_xml
 
 pytestmark = pytest.mark.slow
 

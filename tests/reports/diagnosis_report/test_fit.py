@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lagnet.reports.figures import Figure
+from lagnet.reports.figures.figure import Figure
 from lagnet.reports.sections.fit import KINDS, MOST_TICKS, _figure
 
 

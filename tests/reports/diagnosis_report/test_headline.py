@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from types import SimpleNamespace
 
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.sections import headline
 

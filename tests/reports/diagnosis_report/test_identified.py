@@ -8,8 +8,8 @@ import re
 
 import pytest
 
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.diagnosis_report import write_report
-from lagnet.reports.findings import Findings
 from lagnet.reports.sections import fit, identified
 
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lagnet.reports.contents.replay_data import ReplayData
 from lagnet.reports.diagnosis_report import write_report
 from lagnet.reports.page import write_page
-from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.sections.your_simulator import build
 
 TITLE = "Your simulator, before and after"

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from lagnet.reports.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
+from lagnet.reports.contents.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
 
 START = datetime(2026, 1, 5)
 JOINTS = ("waist", "shoulder", "elbow")

@@ -8,7 +8,7 @@ import re
 import pytest
 from tests.reports.fleet_report.fleets import synthetic_fleet
 
-from lagnet.reports.fleet import Fleet
+from lagnet.reports.contents.fleet import Fleet
 from lagnet.reports.fleet_report import write_fleet_report
 from lagnet.reports.sections.fleet_headline import words_of
 

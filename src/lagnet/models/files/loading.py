@@ -8,7 +8,7 @@ from typing import Any
 
 from lagnet.errors import ModelError
 from lagnet.models.corrected import folder as corrected_files
-from lagnet.rigid_body.description import NONE_HELD
+from lagnet.rigid_body.descriptions.description import NONE_HELD
 
 
 def load_any(spec: str | Path, held: Mapping[str, float] = NONE_HELD, *, layers: str = "full") -> Any:
@@ -59,7 +59,7 @@ def _means_the_robot(spec: str | Path) -> bool:
     Raises:
         ModelError: the folder holds one, so that either may be meant.
     """
-    from lagnet.rigid_body.named_robots import named_robots
+    from lagnet.rigid_body.descriptions.named_robots import named_robots
 
     if isinstance(spec, Path) or spec not in named_robots():
         return False

@@ -12,9 +12,9 @@ from lagnet.models.features import JointFeatures
 from lagnet.models.lagrangians import euler_lagrange
 from lagnet.models.lagrangians.lagrangian import Matrix, Vector
 from lagnet.models.scales import Scales
-from lagnet.models.serial_chain.joint_terms import joint_term_columns
-from lagnet.models.serial_chain.kinematics import Geometry, revolute_mask
-from lagnet.models.serial_chain.newton_euler import SerialArm
+from lagnet.models.serial_chain.mechanics.joint_terms import joint_term_columns
+from lagnet.models.serial_chain.mechanics.kinematics import Geometry, revolute_mask
+from lagnet.models.serial_chain.mechanics.newton_euler import SerialArm
 from lagnet.models.serial_chain.settings import SLOW, STANDARD_GRAVITY, SerialChainSettings
 
 

@@ -25,10 +25,10 @@ from lagnet.models.kinds import ModelSpec
 from lagnet.models.learned_model import LearnedModel
 from lagnet.models.scales import fit_scales
 from lagnet.models.serial_chain.dynamics import SerialChainDynamics
-from lagnet.models.serial_chain.fit import SerialChainFit, fit_serial_chain
-from lagnet.models.serial_chain.inertia import regressor_to_standard, to_standard
-from lagnet.models.serial_chain.kinematics import Geometry
-from lagnet.models.serial_chain.newton_euler import SerialArm, moment_regressor
+from lagnet.models.serial_chain.identification.fit import SerialChainFit, fit_serial_chain
+from lagnet.models.serial_chain.mechanics.inertia import regressor_to_standard, to_standard
+from lagnet.models.serial_chain.mechanics.kinematics import Geometry
+from lagnet.models.serial_chain.mechanics.newton_euler import SerialArm, moment_regressor
 from lagnet.models.serial_chain.settings import SerialChainSettings
 from lagnet.types import MassMatrix, Trajectory
 

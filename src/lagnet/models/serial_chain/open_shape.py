@@ -17,10 +17,10 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.models.learned_model import LearnedModel
-from lagnet.models.serial_chain.kinematics import Geometry
+from lagnet.models.serial_chain.identification.unknowns import ORDINARY_LENGTH
+from lagnet.models.serial_chain.mechanics.kinematics import Geometry
+from lagnet.models.serial_chain.mechanics.newton_euler import moment_regressor
 from lagnet.models.serial_chain.model import SerialChain
-from lagnet.models.serial_chain.newton_euler import moment_regressor
-from lagnet.models.serial_chain.unknowns import ORDINARY_LENGTH
 
 MOTIONS = 400  # random states at which two arms are the same if their torques are
 INDEPENDENT = 50  # of those states, what the learned arm misses counts as so many: it is a shape, not noise

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from lagnet.errors import ModelError
-from lagnet.models.serial_chain.joint_terms import check_joint_terms
+from lagnet.models.serial_chain.mechanics.joint_terms import check_joint_terms
 
 STANDARD_GRAVITY = 9.80665  # [m/s²]
 SLOW = 0.02  # of a joint's root-mean-square speed: where Coulomb friction changes sign

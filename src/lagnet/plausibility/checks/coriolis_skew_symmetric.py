@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility import derivatives
 from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.quantities import derivatives
 from lagnet.plausibility.search import worst_configuration
 from lagnet.plausibility.subject import Subject
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.plausibility.check import Check, Finding
-from lagnet.plausibility.energy import energy_scale, kinetic_energy
 from lagnet.plausibility.motions import DURATION, SmoothMotion, dimension, motions
+from lagnet.plausibility.quantities.energy import energy_scale, kinetic_energy
 from lagnet.plausibility.search import closer_and_closer
 from lagnet.plausibility.subject import Subject
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from lagnet.plausibility.check import Check, Finding, NotApplicable
-from lagnet.plausibility.energy import energy_scale, kinetic_energy
+from lagnet.plausibility.quantities.energy import energy_scale, kinetic_energy
 from lagnet.plausibility.search import closer_and_closer
 from lagnet.plausibility.subject import Subject
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import every_body, reach
 from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.quantities.bodies import every_body, reach
 from lagnet.plausibility.subject import Subject
 
 LEAST = 1.0  # [m]

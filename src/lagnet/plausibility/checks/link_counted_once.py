@@ -6,8 +6,8 @@ from itertools import combinations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import file_links, moving_bodies
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import file_links, moving_bodies
 from lagnet.plausibility.subject import Subject
 from lagnet.rigid_body.inertia import pseudo_inertia
 

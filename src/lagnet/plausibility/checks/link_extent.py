@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import moving_bodies, reach
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import moving_bodies, reach
 from lagnet.plausibility.subject import Subject
 
 LEAST = 1.0  # [m]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import LEAST_INERTIA, Body, every_body
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import LEAST_INERTIA, Body, every_body
 from lagnet.plausibility.subject import Subject
 
 LIGHTEST = 1e-6  # [kg] frames of files carry a token mass without meaning

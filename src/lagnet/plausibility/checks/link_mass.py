@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from lagnet.plausibility.bodies import file_links, moving_bodies
 from lagnet.plausibility.check import Check, Finding
+from lagnet.plausibility.quantities.bodies import file_links, moving_bodies
 from lagnet.plausibility.subject import Subject
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.plausibility.bodies import Body, every_body
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import Body, every_body
 from lagnet.plausibility.subject import Subject
 
 

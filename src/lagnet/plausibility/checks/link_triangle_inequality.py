@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from lagnet.plausibility.bodies import Body, every_body
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import Body, every_body
 from lagnet.plausibility.subject import Subject
 
 

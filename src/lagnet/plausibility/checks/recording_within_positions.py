@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.plausibility.check import Check, Finding
-from lagnet.plausibility.recorded import limits_of, place
+from lagnet.plausibility.quantities.recorded import limits_of, place
 from lagnet.plausibility.subject import Subject
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lagnet.plausibility.check import Check, Finding
-from lagnet.plausibility.recorded import largest_share, limits_of
+from lagnet.plausibility.quantities.recorded import largest_share, limits_of
 from lagnet.plausibility.subject import Subject
 
 

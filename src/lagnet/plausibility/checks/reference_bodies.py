@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.decomposition.offers import offers
-from lagnet.plausibility.bodies import Body, body, moving_bodies
 from lagnet.plausibility.check import Check, Finding, NotApplicable
+from lagnet.plausibility.quantities.bodies import Body, body, moving_bodies
 from lagnet.plausibility.subject import Subject
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lagnet.plausibility.check import Check, Finding, NotApplicable
-from lagnet.plausibility.reference_terms import compare, has_residual, term_limit
+from lagnet.plausibility.quantities.reference_terms import compare, has_residual, term_limit
 from lagnet.plausibility.subject import Subject
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from lagnet.reports.findings import Findings, place
+from lagnet.reports.contents.findings import Findings, place
 from lagnet.reports.page import Section, section
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any
 
-from lagnet.reports.arm_drawing import MARGIN, RADIUS, WIDTH, draw_arm, draw_chain
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.arm_drawing import MARGIN, RADIUS, WIDTH, draw_arm, draw_chain
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import percent, wrapped
 

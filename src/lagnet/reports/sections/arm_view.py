@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.verdict.report_data import ArmMotion
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.page import Section, json_for_script, section
 
 MOST = 2.0  # of the torque's scatter that fills the colours, at most

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
 from lagnet.reports.page import Section, section
 
 

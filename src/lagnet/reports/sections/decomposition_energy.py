@@ -6,9 +6,9 @@ import numpy as np
 
 from lagnet.decomposition.decompose import Decomposition
 from lagnet.decomposition.energies import work
-from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
+from lagnet.reports.figures.figure import SAME_X, Figure, Trace, axis, colour, packed
+from lagnet.reports.figures.timeline import Timeline, timeline
 from lagnet.reports.page import Section, section
-from lagnet.reports.timeline import Timeline, timeline
 
 BUDGET = 2000
 

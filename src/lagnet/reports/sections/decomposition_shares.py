@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lagnet.decomposition.decompose import Decomposition
-from lagnet.reports.figures import Figure, axis, colour, names_axis, plain
+from lagnet.reports.figures.figure import Figure, axis, colour, names_axis, plain
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import effect_words, percent
 

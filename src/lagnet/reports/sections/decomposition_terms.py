@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from lagnet.decomposition.decompose import Decomposition
-from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
+from lagnet.reports.figures.figure import SAME_X, Figure, Trace, axis, colour, packed
+from lagnet.reports.figures.timeline import Timeline, timeline
 from lagnet.reports.page import Section, section
-from lagnet.reports.timeline import Timeline, timeline
 from lagnet.reports.wording import effect_words
 
 SHOWN = ("total", "inertial", "coriolis", "gravity", "residual")

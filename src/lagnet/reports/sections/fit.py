@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from lagnet.reports.figures import Figure, Trace, axis, colour, names_axis, plain
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.figure import Figure, Trace, axis, colour, names_axis, plain
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import percent, wrapped
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
-from lagnet.reports.figures import packed
-from lagnet.reports.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
+from lagnet.reports.contents.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
+from lagnet.reports.figures.figure import packed
 from lagnet.reports.wording import effect_words
 
 EPOCH = datetime(1970, 1, 1)

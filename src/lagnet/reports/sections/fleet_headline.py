@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lagnet.reports.fleet import Fleet, FleetEvent
+from lagnet.reports.contents.fleet import Fleet, FleetEvent
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import counted, effect_words, number
 

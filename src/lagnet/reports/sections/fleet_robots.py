@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lagnet.reports.fleet import Fleet
+from lagnet.reports.contents.fleet import Fleet
 from lagnet.reports.page import Section, section
 
 

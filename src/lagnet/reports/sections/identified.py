@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from lagnet.reports.findings import Findings
-from lagnet.reports.friction_curves import friction_curves
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.friction_curves import friction_curves
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import with_interval
 

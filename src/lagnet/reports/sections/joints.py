@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from lagnet.reports.figures import Figure
-from lagnet.reports.findings import Findings
-from lagnet.reports.joint_figures import residual_by_velocity, torque_over_time
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.figure import Figure
+from lagnet.reports.figures.joint_figures import residual_by_velocity, torque_over_time
 from lagnet.reports.page import Section, section
 from lagnet.reports.sections.fit import layers_of
 

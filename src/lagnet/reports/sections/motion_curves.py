@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
-from lagnet.reports.decimation import extremes, series_budget
-from lagnet.reports.figures import SAME_X, Figure, axis, colour, packed
+from lagnet.reports.figures.decimation import extremes, series_budget
+from lagnet.reports.figures.figure import SAME_X, Figure, axis, colour, packed
 from lagnet.reports.page import Section, section
 
 GAP = 1.0  # [s] between recordings that are drawn one after the other

@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.motion.problem import motion_rates
-from lagnet.reports.figures import Figure, axis, colour, packed
+from lagnet.reports.figures.figure import Figure, axis, colour, packed
 from lagnet.reports.page import Section, section
 
 BINS = 12

@@ -9,8 +9,8 @@ import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.motion.rest import at_rest
-from lagnet.reports.decimation import scattered
-from lagnet.reports.figures import Figure, axis, colour, packed
+from lagnet.reports.figures.decimation import scattered
+from lagnet.reports.figures.figure import Figure, axis, colour, packed
 from lagnet.reports.page import Section, section
 
 MOST = 600  # points of each side

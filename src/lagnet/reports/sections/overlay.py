@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.nominal.log_alignment import SideBySide
-from lagnet.reports.decimation import extremes
-from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, packed
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.decimation import extremes
+from lagnet.reports.figures.figure import SAME_X, Figure, Trace, axis, colour, packed
 from lagnet.reports.page import Section, section
 
 POINTS = 12_000  # of all joints together

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from lagnet.reports.findings import Findings, place
+from lagnet.reports.contents.findings import Findings, place
 from lagnet.reports.page import Section, section
 
 

@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from lagnet.diagnosis.verdict.report_data import Comparison
-from lagnet.reports.figures import Figure, Trace, axis, colour, names_axis, plain
-from lagnet.reports.findings import Findings, place
+from lagnet.reports.contents.findings import Findings, place
+from lagnet.reports.figures.figure import Figure, Trace, axis, colour, names_axis, plain
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import effect_words, number, wrapped
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from lagnet.reports.figures import Figure
-from lagnet.reports.findings import Findings
-from lagnet.reports.leftover_figures import formula_words, leftover_by_signal
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.figures.figure import Figure
+from lagnet.reports.figures.leftover_figures import formula_words, leftover_by_signal
 from lagnet.reports.page import Section, section
 
 PICTURES = 3  # joints with a picture: those with most left

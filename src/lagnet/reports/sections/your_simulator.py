@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import CensoredData, ecdf
 
-from lagnet.reports.decimation import extremes
-from lagnet.reports.figures import SAME_X, Figure, Trace, axis, colour, names_axis, packed, plain
-from lagnet.reports.findings import Findings
+from lagnet.reports.contents.findings import Findings
+from lagnet.reports.contents.replay_data import ReplayData
+from lagnet.reports.figures.decimation import extremes
+from lagnet.reports.figures.figure import SAME_X, Figure, Trace, axis, colour, names_axis, packed, plain
 from lagnet.reports.page import Section, section
-from lagnet.reports.replay_data import ReplayData
 from lagnet.reports.wording import wrapped
 
 POINTS = 12_000  # of all joints together

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, exact, nowhere
 from lagnet.simulators.runtime_files import write_runtime
 from lagnet.simulators.urdf_text import urdf_of

@@ -9,8 +9,8 @@ from typing import Any, ClassVar, final
 
 import numpy as np
 
-from lagnet.rigid_body.writing import write_text
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.rigid_body.descriptions.writing import write_text
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact, nowhere
 from lagnet.simulators.exporters.sdf import joint_friction
 from lagnet.simulators.exporters.usd import UsdExporter

@@ -10,9 +10,9 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from lagnet.rigid_body.body_tree import TreeBody
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.forward_motion import motor_inertia
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact
-from lagnet.simulators.forward_motion import motor_inertia
 from lagnet.simulators.runtime_files import write_runtime
 from lagnet.simulators.xml_text import number, numbers, quaternion, write_xml
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar, final
 
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact
 from lagnet.simulators.runtime_files import write_runtime
 from lagnet.simulators.urdf_text import urdf_of

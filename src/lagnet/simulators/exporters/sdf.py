@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lagnet.rigid_body.body_tree import TreeBody
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact, nowhere
 from lagnet.simulators.exporters.mjcf import friction_at_rest
 from lagnet.simulators.xml_text import number, numbers, roll_pitch_yaw, write_xml

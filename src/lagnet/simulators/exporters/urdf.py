@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact, nowhere
 from lagnet.simulators.exporters.mjcf import friction_at_rest
 from lagnet.simulators.urdf_text import tilted_root, urdf_of

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lagnet.rigid_body.body_tree import TreeBody
-from lagnet.rigid_body.writing import write_text
-from lagnet.simulators.arm_physics import ArmPhysics
+from lagnet.rigid_body.descriptions.writing import write_text
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
 from lagnet.simulators.exporter import Exporter, Place, approximate, exact, nowhere
 from lagnet.simulators.exporters.sdf import joint_friction, shifted_frame
 from lagnet.simulators.xml_text import quaternion

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from lagnet.diagnosis.data_quality.check import Evidence, Reading, ReadingCheck
 from lagnet.diagnosis.data_quality.misfit import misfit_of, misfits_of
 from lagnet.errors import RobotError
-from lagnet.rigid_body.named_robots import named_robots
+from lagnet.rigid_body.descriptions.named_robots import named_robots
 from lagnet.rigid_body.robot import Robot, load_description
 
 RARE = 1.5  # prior of another robot: a wrong column is more common

@@ -1,0 +1,1 @@
+"""Parts of one command each: what `diagnose`, `demo` and `data inspect` do beside parsing their options."""

@@ -1,0 +1,1 @@
+"""What several commands share: lines and progress on the terminal, options of many values, robots and replays."""

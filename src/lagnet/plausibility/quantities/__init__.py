@@ -1,0 +1,1 @@
+"""What several checks ask of a model: derivatives, energies, bodies, terms beside a reference, recordings in limits."""

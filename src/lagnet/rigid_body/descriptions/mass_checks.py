@@ -1,0 +1,53 @@
+"""Masses that no real arm has: said aloud, and refused where no dynamics are left."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagnet.errors import RobotError
+from lagnet.rigid_body.descriptions.description import moving_bodies
+from lagnet.rigid_body.untyped_pinocchio import Model, pin
+
+SINGULAR = 1e-10  # of the largest eigenvalue of a mass matrix scaled to a unit diagonal; real arms stay above 1e-4
+POSES = 5
+
+
+def mass_warnings(model: Model, where: str) -> list[str]:
+    """Warnings on bodies without mass and on a mass matrix without inverse.
+
+    Raises:
+        RobotError: a joint with nothing that has mass behind it.
+    """
+    _check_subtrees(model, where)
+    warnings = []
+    for i in range(1, model.njoints):
+        if model.inertias[i].mass <= 0:
+            warnings.append(f"the body behind joint {model.names[i]} has a mass of {model.inertias[i].mass:g} kg")
+    return warnings + _singular_warnings(model)
+
+
+def _check_subtrees(model: Model, where: str) -> None:
+    for i in range(1, model.njoints):
+        bodies = [model.inertias[j] for j in model.subtrees[i]]
+        if all(body.mass == 0 and not np.any(body.inertia) for body in bodies):
+            raise RobotError(
+                f"nothing behind joint {model.names[i]} has mass",
+                where=where,
+                next_step=f"give link {moving_bodies(model)[i - 1]} an inertial, or make the joint fixed",
+            )
+
+
+def _singular_warnings(model: Model) -> list[str]:
+    """Looks at a few random poses: an arm whose mass matrix has no inverse has no forward dynamics."""
+    generator, data = np.random.default_rng(0), model.createData()
+    for _ in range(POSES):
+        matrix = np.triu(pin.crba(model, data, generator.uniform(-1.0, 1.0, model.nq)).reshape(model.nv, model.nv))
+        matrix = matrix + np.triu(matrix, 1).T
+        diagonal = np.diag(matrix)
+        if diagonal.min() <= SINGULAR * diagonal.max():
+            name = model.names[1 + int(np.argmin(diagonal))]
+            return [f"joint {name} feels no inertia: the mass matrix has no inverse, forward dynamics is undefined"]
+        scaled = np.linalg.eigvalsh(matrix / np.sqrt(np.outer(diagonal, diagonal)))
+        if scaled[0] <= SINGULAR * scaled[-1]:
+            return ["the mass matrix is not positive definite: forward dynamics is undefined in some poses"]
+    return []

@@ -1,0 +1,1 @@
+"""A corrected model as an arm that a simulator can have: its physics as numbers, its drive, and how it moves."""
