@@ -76,11 +76,12 @@ def _fitted(
         choice = choose(design)
         if choice is None:
             return None
+        negative = {t.joint for i, t in _columns_of(design, "rotor") if choice.ridge.x[i] < 0}
         layer, final, choice = _positive_definite(problem, effects, design, choice, rest)
-        negative = {t.joint for i, t in _columns_of(design, "rotor") if design.scale[i] > 0 and final.scale[i] == 0}
-        if not negative - late:
+        removed = {t.joint for i, t in _columns_of(design, "rotor") if design.scale[i] > 0 and final.scale[i] == 0}
+        if not removed - late:
             return Identified(replace(layer, rest=friction_at_rest(problem, pieces, layer)), final, choice)
-        late |= negative
+        late |= removed | negative  # where one is no rotor, no negative one is
 
 
 def _columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
