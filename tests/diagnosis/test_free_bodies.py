@@ -16,6 +16,7 @@ JOINTS = 5
 SHARP = 1e-3  # [rad/s]
 SIZES = {"coulomb_friction": ("Fc", 2.0), "viscous_friction": ("Fv", 0.5)}
 NOISE = 3e-5  # of the torque's variance, beyond its noise
+NO_GAIN = 0.01  # of the nominal error
 
 
 def friction(q: np.ndarray, v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> np.ndarray:
@@ -62,3 +63,14 @@ def test_the_verdict_says_beside_what_the_names_were_judged(found) -> None:
     assert BESIDE_FREE_LINKS in found.verdict.warnings
     told = next(e.explanation for e in found.effects if e.effect == "coulomb_friction")
     assert "named physics without the links that differ leaves" in told
+
+
+def test_links_that_are_all_half_as_heavy_give_no_joint_a_gain(plant) -> None:
+    arm = random_arm(3, seed=3, kinds=("revolute",), fixed=False)
+    real = plant(friction, robot=arm.with_inertial_parameters(0.5 * arm.inertial_parameters()))
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert "torque_gain" not in {e.effect for e in result.effects}
+    assert result.state.judged is not None
+    assert max(f.nmse_identified for f in result.verdict.fit) < NO_GAIN * min(
+        f.nmse_nominal for f in result.verdict.fit
+    )

@@ -46,9 +46,10 @@ def bodies_are_refuted(candidate: Candidate) -> bool:
 
 
 def are_scaled_everywhere(candidate: Candidate) -> bool:
-    """Whether a link changes and half of the joints or more have a gain: links all scaled give each joint a gain."""
-    links = [e for e in candidate.effects if effect_named(e.effect).changes_link]
-    return bool(links) and 2 * gains_among(candidate.effects) >= candidate.problem.n_dof > 1
+    """Whether all joints have a gain, or half of them beside a changed link: links all scaled give each joint a gain."""
+    links, joints = [e for e in candidate.effects if effect_named(e.effect).changes_link], candidate.problem.n_dof
+    gains = gains_among(candidate.effects)
+    return joints > 1 and (gains == joints or (bool(links) and 2 * gains >= joints))
 
 
 def gains_among(effects: Sequence[NamedEffect]) -> int:
