@@ -59,21 +59,25 @@ class GainBesideFreeLinks(RejectionRule):
 
 def gains_beside_free_links(candidate: Candidate, gains: Sequence[NamedEffect]) -> list[tuple[float, float]]:
     """Deviation w of each gain from one and its standard error, all links free; empty for a model without bodies."""
-    problem = candidate.problem
-    model = CorrectedModel(problem.nominal, candidate.effects, problem.slow, straight=problem.straight)
-    source = model.regressor_source
-    if source is None:
+    problem, segments = candidate.problem, _without(candidate, gains)
+    if not segments:
         return []
-    others = [e for e in candidate.effects if not any(e is gain for gain in gains)]
-    segments = []
-    for piece in spread_evenly(problem.fit, MOST_SAMPLES):
-        torque = torque_with(replace(piece.motion(problem), recorded=None), others)
-        regressor = source.joint_torque_regressor(piece.q, piece.v, piece.a)
-        segments.append(FitSegment(piece, regressor, torque, piece.tau - torque))
     friction = [TermGroup("core", tuple(MotionTerm(k, j) for k in CORE), free=True) for j in range(problem.n_dof)]
     scales = [TermGroup("gain", (MotionTerm("gain", int(e.joint or 0)),), free=True) for e in gains]
     design = make_design(problem, segments, [*friction, *scales])
     ridge = fit_ridge(design, joint_equations(design), INEFFICIENCY)
-    first = design.n_unknowns - len(gains)
-    errors = design.unscaled(np.sqrt(np.diag(ridge.covariance)))[first:]
-    return list(zip(design.unscaled(ridge.x)[first:].tolist(), errors.tolist(), strict=True))
+    last = slice(design.n_unknowns - len(gains), None)
+    errors = design.unscaled(np.sqrt(np.diag(ridge.covariance)))
+    return list(zip(design.unscaled(ridge.x)[last].tolist(), errors[last].tolist(), strict=True))
+
+
+def _without(candidate: Candidate, gains: Sequence[NamedEffect]) -> list[FitSegment]:
+    """Fitted motion with the torque of all effects but the gains as load; none for a model without bodies."""
+    problem, out = candidate.problem, []
+    model = CorrectedModel(problem.nominal, candidate.effects, problem.slow, straight=problem.straight)
+    others = [e for e in candidate.effects if not any(e is gain for gain in gains)]
+    for piece in spread_evenly(problem.fit, MOST_SAMPLES) if (source := model.regressor_source) is not None else ():
+        torque = torque_with(replace(piece.motion(problem), recorded=None), others)
+        regressor = source.joint_torque_regressor(piece.q, piece.v, piece.a)
+        out.append(FitSegment(piece, regressor, torque, piece.tau - torque))
+    return out
