@@ -46,7 +46,7 @@ def bodies_are_refuted(candidate: Candidate) -> bool:
 
 
 def are_scaled_everywhere(candidate: Candidate) -> bool:
-    """Whether all joints have a gain, or half of them beside a changed link: links all scaled give each joint a gain."""
+    """Whether all joints have a gain, or half of them beside a changed link, as where all links are scaled."""
     links, joints = [e for e in candidate.effects if effect_named(e.effect).changes_link], candidate.problem.n_dof
     gains = gains_among(candidate.effects)
     return joints > 1 and (gains == joints or (bool(links) and 2 * gains >= joints))
