@@ -10,6 +10,7 @@ from validation.far_models.study import FLOOR
 from validation.real_arms.least_squares import LeastSquares
 
 from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.identified.verdict_entry import identified_as_json
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.models.corrected.model import CorrectedModel
@@ -144,6 +145,7 @@ def test_torque_in_phase_with_minus_a_is_speed_that_lags_and_no_inertia() -> Non
     assert np.all(np.linalg.eigvalsh(model.mass_matrix(poses)) > 0)
     before, after = unseen_errors(problem, lambda p: p.load), unseen_errors(problem, along(model))
     assert after[2] < MUCH_LESS * before[2]
+    assert f"At {arm.joints[2]} torque lags" in identified_as_json(found, arm, arm.joints)["words"]
 
 
 @pytest.mark.parametrize("number", [3, 13])

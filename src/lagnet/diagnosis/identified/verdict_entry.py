@@ -36,7 +36,7 @@ def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[st
     bodies, undetermined = _bodies(found, robot) if found.design.n_bodies else ([], [])
     own = [entry for j, name in enumerate(joints) if (entry := _joint(found, j, name))]
     ties = _ties(found, joints)
-    words = _words(bodies, undetermined, own, ties)
+    words = _words(bodies, undetermined, own, ties, _late(found, joints))
     entry = {"bodies": bodies, "undetermined": undetermined, "joints": own, "ties": ties}
     return {**entry, "samples_that_count_as_one": found.choice.inefficiency, "words": words}
 
@@ -106,6 +106,13 @@ def _curve(found: Identified, joint: int) -> dict[str, list[float]]:
     return {"speed": speed.tolist(), "torque": torque.tolist()}
 
 
+def _late(found: Identified, joints: Sequence[str]) -> list[str]:
+    """Joints with a notable torque in phase with −a."""
+    first = found.design.n_bodies
+    pairs = [(first + i, t) for i, t in enumerate(found.design.terms) if t.kind == "lag"]
+    return [joints[t.joint] for i, t in pairs if abs(found.choice.ridge.x[i]) > NOTABLE]
+
+
 def _ties(found: Identified, joints: Sequence[str]) -> list[dict[str, Any]]:
     pairs = zip(found.layer.terms, found.layer.weights, strict=True)
     return [
@@ -115,7 +122,7 @@ def _ties(found: Identified, joints: Sequence[str]) -> list[dict[str, Any]]:
     ]
 
 
-def _words(bodies: list, undetermined: list, own: list, ties: list) -> str:
+def _words(bodies: list, undetermined: list, own: list, ties: list, late: list[str]) -> str:
     """The layer in plain English."""
     parts = []
     links = list(dict.fromkeys(b["link"] for b in bodies))
@@ -124,6 +131,8 @@ def _words(bodies: list, undetermined: list, own: list, ties: list) -> str:
         parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
     if own:
         parts.append(f"Friction, rotor or offset beside the named physics at {_listed([e['joint'] for e in own])}.")
+    if late:
+        parts.append(f"At {_listed(late)} torque lags behind the motion: a part of it is in phase with −a.")
     if ties:
         tied = list(dict.fromkeys(" and ".join(t["joints"]) for t in ties))
         parts.append(f"The motors of {_listed(tied)} are coupled.")
