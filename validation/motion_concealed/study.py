@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.motion.diagnose import MotionDiagnosis, diagnose_motion
-from validation.motion_concealed.plants import LISTED, UNLISTED, Plant, plant
+from lagnet.diagnosis.motion.diagnose import diagnose_motion
+from lagnet.diagnosis.verdict.verdict import EffectFound
+from validation.motion_concealed.plants import LISTED, UNLISTED, Cause, plant
 
 HERE = Path(__file__).resolve().parent
 FULL, QUICK = 30, 2
@@ -29,32 +30,33 @@ MOST_TIED = 3
 LEAST = {"precision": 0.97, "recall": 0.92}
 
 
-def scored(case: Plant, result: MotionDiagnosis) -> dict[str, Any]:
+def scored(
+    plant_name: str, cause: Cause | None, joints: Sequence[str], effects: Sequence[EffectFound]
+) -> dict[str, Any]:
     """Which claims are right, whether the cause was found, and how far its parameter is off."""
-    right = [e for e in result.effects if _says(e, case)]
+    right = [e for e in effects if _says(e, cause, joints)]
     row: dict[str, Any] = {
-        "plant": case.name,
-        "cause": None if case.cause is None else asdict(case.cause),
-        "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in result.effects],
-        "wrong": [f"{e.effect} at {e.joint}" for e in result.effects if not _says(e, case)],
+        "plant": plant_name,
+        "cause": None if cause is None else asdict(cause),
+        "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in effects],
+        "wrong": [f"{e.effect} at {e.joint}" for e in effects if not _says(e, cause, joints)],
         "found": bool(right),
     }
-    for effect in right:
-        for p in effect.parameters if case.cause is not None else ():
-            if case.cause.parameter == p.name and effect.effect == case.cause.effect:
-                row["error"] = abs(p.value / case.cause.value - 1.0)
-                row["covered"] = p.ci95[0] <= case.cause.value <= p.ci95[1]
+    for effect in right if cause is not None else ():
+        for p in effect.parameters:
+            if cause.parameter == p.name and effect.effect == cause.effect:
+                row["error"] = abs(p.value / cause.value - 1.0)
+                row["covered"] = p.ci95[0] <= cause.value <= p.ci95[1]
     return row
 
 
-def _says(claim: Any, case: Plant) -> bool:
+def _says(claim: EffectFound, cause: Cause | None, joints: Sequence[str]) -> bool:
     """Whether a claim, with at most two ties beside it, names the cause at its joint."""
-    if case.cause is None or case.cause.effect in UNLISTED:
+    if cause is None or cause.effect in UNLISTED:
         return False
     names = {claim.effect, *claim.tied_with}
-    meant = {case.cause.effect, *ALSO_SAYS.get(case.cause.effect, ())}
-    anywhere = case.cause.effect == "payload"
-    at = anywhere or claim.joint == case.robot.joints[case.cause.joint]
+    meant = {cause.effect, *ALSO_SAYS.get(cause.effect, ())}
+    at = cause.effect == "payload" or claim.joint == joints[cause.joint]
     return bool(names & meant) and len(names) <= MOST_TIED and at
 
 
@@ -67,7 +69,8 @@ def run(plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS) ->
             case = plant(seed, index, kinds[index % len(kinds)], effect, seconds, Path(folder))
             begun = time.process_time()
             result = diagnose_motion(case.recordings[:2], case.robot, case.recordings[2:], servo=case.servo)
-            cases.append(scored(case, result) | {"processor_seconds": round(time.process_time() - begun, 1)})
+            row = scored(case.name, case.cause, case.robot.joints, result.effects)
+            cases.append(row | {"processor_seconds": round(time.process_time() - begun, 1)})
             print(json.dumps(cases[-1]), flush=True)
     return {"study": "motion_concealed", "seed": seed, "figures": figures(cases), "cases": cases}
 
