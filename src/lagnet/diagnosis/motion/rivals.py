@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lagnet.diagnosis.motion.block_scores import advantage
+from lagnet.diagnosis.motion.block_scores import advantage, log10_odds
 from lagnet.diagnosis.motion.fitting import robust_scale
 from lagnet.diagnosis.motion.joint_case import JointCase
 from lagnet.diagnosis.motion.refitting import Selection, refit, starts_with, without
@@ -70,7 +70,7 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             simpler = _simpler(case, found, scale)
             if len(simpler.effects) < len(selected.effects) and _as_good(case, simpler, selected):
                 better = simpler if better is None or simpler.blocks.mean() < better.blocks.mean() else better
-    odds = None if best is None else max(-99.0, min(99.0, 0.5 * best[2] * abs(best[2]) / 2.302585))
+    odds = None if best is None else log10_odds(best[2])
     return Comparison(effect, gain, errors, tuple(tied), None if best is None else best[0], odds), better
 
 
