@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm_rollout import ArmRuns
 from lagnet.diagnosis.motion.fitting import HUBER, robust_scale
 from lagnet.diagnosis.motion.intervals import NORMAL_95
-from lagnet.diagnosis.motion.payload_fit import FARTHEST, body_of, sensitivities_of
+from lagnet.diagnosis.motion.payload.arm_rollout import ArmRuns
+from lagnet.diagnosis.motion.payload.fit import FARTHEST, body_of, sensitivities_of
 
 BLOCKS = 40  # of time
 UNSEEN = 1e-6  # of the largest eigenvalue of the normal matrix: what no joint shows is anywhere within `FARTHEST`

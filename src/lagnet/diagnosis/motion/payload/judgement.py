@@ -8,24 +8,17 @@ nominal servos sets the scale of its torque: where no gain is given, mass and ga
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm_rollout import ArmRuns, runs_held_out, runs_to_fit
-from lagnet.diagnosis.motion.block_scores import advantage
 from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.payload_fit import (
-    body_loads,
-    body_of,
-    cost_of,
-    fit_point_mass,
-    joint_errors,
-    sizes_of_point,
-    starts_of_point,
-)
-from lagnet.diagnosis.motion.payload_interval import point_intervals
+from lagnet.diagnosis.motion.payload.arm_rollout import ArmRuns, runs_to_fit
+from lagnet.diagnosis.motion.payload.comparison import PayloadComparison, compare_payload
+from lagnet.diagnosis.motion.payload.fit import body_of
+from lagnet.diagnosis.motion.payload.found import PayloadFound
+from lagnet.diagnosis.motion.payload.interval import point_intervals
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.diagnosis.motion.refitting import refit
 from lagnet.diagnosis.motion.selection import Rejected
@@ -34,31 +27,6 @@ from lagnet.servos.parameters import INDEX
 
 ALIKE = frozenset({"load_error", "gain_error", "rotor_inertia", "joint_spring"})  # that one joint can take for a load
 REMAINDER = "remainder"
-
-
-@dataclass(frozen=True, eq=False)
-class PayloadFound:
-    """A payload at the last link.
-
-    Args:
-        values: m [kg] and c [m] in the last joint's frame.
-        intervals: 95 %, by name.
-        tied: effects of one joint that predict as well.
-        gain, errors: of the held-out score over the nominal model, and that gain over its standard error.
-        lead: of the held-out score over the effects joint by joint.
-        lead_errors: that lead over its standard error.
-        power: mean squared held-out error over the variance of the motion, without and with it.
-    """
-
-    values: Mapping[str, float]
-    intervals: Mapping[str, tuple[float, float]]
-    tied: tuple[str, ...]
-    gain: float
-    errors: float
-    lead: float
-    lead_errors: float
-    power: tuple[float, float]
-    body: np.ndarray
 
 
 def judge_payload(
@@ -77,39 +45,16 @@ def judge_payload(
         found: diagnoses of the joints without a payload.
         limits: where effects are named.
     """
-    known = {j: d for j, d in found.items() if servo.known[j]}
-    stated = sum(_stated(d) for d in known.values())
-    if not stated or len(known) != len(found):
+    stated = sum(_stated(d) for d in found.values())
+    if not stated or not all(servo.known[j] for j in found):
         return None, dict(found)
-    point, sizes = _fitted_point(problem, fitted, servo, known)
-    floors = [d.case.floor for d in known.values()]
-    held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(known))
-    by_joint = servo.laws.copy()
-    for joint, diagnosis in known.items():
-        by_joint[joint] = diagnosis.named_law
-    nominal, joints, loaded = (
-        held.errors(laws, body) for laws, body in ((servo.laws, None), (by_joint, None), (servo.laws, body_of(point)))
-    )
-    before, apart, after = (held.scores(e, floors) for e in (nominal, joints, loaded))
-    gain, errors = advantage(before, after)
-    lead, lead_errors = advantage(apart, after)
-    if gain < limits.gain or errors < limits.errors or not _explains(nominal, loaded, floors, limits):
+    compared = compare_payload(problem, fitted, servo, found)
+    if not compared.needed(limits) or not compared.as_good(limits):
         return None, dict(found)
-    as_good = lead > -limits.gain or lead_errors > -limits.tie or _within_step(loaded, floors)
-    better = lead > limits.gain and lead_errors > limits.errors
-    if not as_good:
-        return None, dict(found)
-    if stated == 1 and not better:
+    if stated == 1 and not compared.better(limits):
         return None, {j: _tied_with_payload(d) for j, d in found.items()}
-    fit = ArmRuns(problem, runs_to_fit(problem, fitted), tuple(known))
-    values, intervals = point_intervals(fit, servo.laws, point, sizes, np.array(floors))
-    variance = max(float(np.mean([np.var(problem.series[j].q) for j in known])), 1e-12)
-    power = tuple(float(np.mean([np.mean(e**2) for e in x])) / variance for x in (nominal, loaded))
-    tied = _alike_at_one_joint(known, loaded, limits)
-    payload = PayloadFound(
-        values, intervals, tied, gain, errors, lead, lead_errors, (power[0], power[1]), body_of(point)
-    )
-    return payload, {j: _explained(d, lead, -limits.gain) for j, d in found.items()}
+    payload = _payload(problem, fitted, servo, found, compared, limits)
+    return payload, {j: _explained(d, compared.lead, -limits.gain) for j, d in found.items()}
 
 
 def _stated(found: JointDiagnosis) -> int:
@@ -117,37 +62,39 @@ def _stated(found: JointDiagnosis) -> int:
     return len(found.named.effects) + sum(r.rule == REMAINDER for r in found.rejected)
 
 
-def _fitted_point(
-    problem: MotionProblem, fitted: int, servo: NominalServo, known: Mapping[int, JointDiagnosis]
-) -> tuple[np.ndarray, np.ndarray]:
-    """(m, h) and its sizes: first joint by joint, which is fast, then by rollouts of the whole arm."""
-    cases, floors = {j: d.case for j, d in known.items()}, np.array([d.case.floor for d in known.values()])
-    sizes, apart = sizes_of_point(problem), joint_errors(cases, body_loads(problem))
-    start = min(starts_of_point(problem, sizes), key=lambda p: cost_of(apart(p), 10.0 * floors))
-    point = fit_point_mass(apart, start, sizes, floors)
-    fit = ArmRuns(problem, runs_to_fit(problem, fitted), tuple(known))
-    return fit_point_mass(lambda p: fit.errors(servo.laws, body_of(p)), point, sizes, floors, 6), sizes
-
-
-def _explains(before: list[np.ndarray], after: list[np.ndarray], floors: list[float], limits: SelectionLimits) -> bool:
-    """Whether no joint keeps most of a large error: then another cause acts there."""
-    sizes = [[float(np.sqrt(np.mean(e**2))) for e in x] for x in (before, after)]
-    rows = zip(*sizes, floors, strict=True)
-    return all(a <= max(limits.remainder * b, limits.unexplained * f) for b, a, f in rows)
-
-
-def _within_step(errors: list[np.ndarray], floors: list[float]) -> bool:
-    """Whether every joint is predicted to one step of its encoder, two floors: nothing is left to say there."""
-    return all(float(np.sqrt(np.mean(e**2))) <= 2.0 * f for e, f in zip(errors, floors, strict=True))
+def _payload(
+    problem: MotionProblem,
+    fitted: int,
+    servo: NominalServo,
+    found: Mapping[int, JointDiagnosis],
+    compared: PayloadComparison,
+    limits: SelectionLimits,
+) -> PayloadFound:
+    """The payload with its intervals and ties."""
+    fit = ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found))
+    values, intervals = point_intervals(fit, servo.laws, compared.point, compared.sizes, compared.floors)
+    variance = max(float(np.mean([np.var(problem.series[j].q) for j in found])), 1e-12)
+    before, after = (float(np.mean([np.mean(e**2) for e in x])) for x in (compared.nominal, compared.loaded))
+    return PayloadFound(
+        values=values,
+        intervals=intervals,
+        tied=_alike_at_one_joint(found, compared.loaded, limits),
+        gain=compared.gain,
+        errors=compared.errors,
+        lead=compared.lead,
+        lead_errors=compared.lead_errors,
+        power=(before / variance, after / variance),
+        body=body_of(compared.point),
+    )
 
 
 def _alike_at_one_joint(
-    known: Mapping[int, JointDiagnosis], loaded: list[np.ndarray], limits: SelectionLimits
+    found: Mapping[int, JointDiagnosis], loaded: list[np.ndarray], limits: SelectionLimits
 ) -> tuple[str, ...]:
     """For an arm of one joint: a load of another size beside a rotor, where it predicts as well."""
-    if len(known) != 1:
+    if len(found) != 1:
         return ()
-    (diagnosis,) = known.values()
+    (diagnosis,) = found.values()
     case = diagnosis.case
     law = case.law.copy()
     law[INDEX["load_gain"]] = 1.3
