@@ -1,7 +1,8 @@
 """Each named effect against its rivals: replaced by one, all parameters refitted, compared on the same held-out blocks.
 
 A rival that predicts as well is tied; one that predicts better, or as well with fewer effects, replaces the effect. A
-rival that contains the effect, or has more parameters, predicts as well by construction and is no tie.
+rival that contains the effect, or has more parameters, predicts as well by construction and is no tie. A special case
+of an effect takes its place where held-out motion does not ask for more.
 """
 
 from __future__ import annotations
@@ -63,6 +64,10 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             best = (rival, lead, lead_errors)
         if len(servo_effect(rival).parameters) > own or effect in servo_effect(rival).contains:
             continue
+        if rival in servo_effect(effect).contains:  # as good with fewer parameters, or no rival at all
+            if _needless(case, found, selected):
+                better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
+            continue
         if lead_errors < -case.limits.errors and lead < -case.limits.gain:
             better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
         elif lead_errors < case.limits.tie or lead < 0.1 * max(gain, 0.0):
@@ -87,9 +92,15 @@ def _as_good(case: JointCase, one: Selection, other: Selection) -> bool:
     return advantage(one.blocks, other.blocks)[0] < case.limits.gain
 
 
+def _needless(case: JointCase, special: Selection, general: Selection) -> bool:
+    """Whether held-out motion does not ask for the general law beyond its special case, as selection would."""
+    gain, errors = advantage(special.blocks, general.blocks)
+    return gain < case.limits.gain or errors < case.limits.errors
+
+
 def _rivals(case: JointCase, selected: Selection, effect: str) -> list[str]:
     named = set(servo_effect(effect).confused_with) | {
         n for n, law in SERVO_CATALOGUE.items() if effect in law.confused_with
     }
-    contained = {c for e in selected.effects for c in servo_effect(e).contains}
+    contained = {c for e in selected.effects if e != effect for c in servo_effect(e).contains}
     return [n for n in SERVO_CATALOGUE if n in named and n in case.excited and n not in {*selected.effects, *contained}]
