@@ -141,7 +141,7 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     gain, errors = advantage(fewer.blocks, selected.blocks)
     predicted = case.validation.predict(np.array([selected.law, fewer.law]))
     difference = float(np.sqrt(np.mean((predicted[0] - predicted[1]) ** 2)))
-    change = _relative_change(case, selected, name)
+    change = relative_change(case.law, selected.law, name)
     limits = case.limits
     for rule, value, limit in (
         ("no_holdout_gain", gain, limits.gain),
@@ -154,10 +154,10 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     return gain, None
 
 
-def _relative_change(case: JointCase, selected: Selection, name: str) -> float:
+def relative_change(nominal: np.ndarray, law: np.ndarray, name: str) -> float:
     """max |p − p₀| / |p₀| over the parameters of an effect, p₀ their nominal values; infinite for p₀ = 0."""
     effect = servo_effect(name)
-    before, after = effect.read(case.law), effect.read(selected.law)
+    before, after = effect.read(nominal), effect.read(law)
     sizes = [
         abs(after[n] - before[n]) / abs(before[n]) if before[n] else np.inf for n in before if after[n] != before[n]
     ]

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.fitting import cost_of
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
 from lagnet.diagnosis.motion.block_scores import advantage
 from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.payload.arm_rollout import ArmRuns, runs_held_out, runs_to_fit
 from lagnet.diagnosis.motion.payload.fit import (
     body_loads,
     body_of,
-    cost_of,
     fit_point_mass,
     joint_errors,
     sizes_of_point,

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.payload.arm_rollout import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.payload.comparison import PayloadComparison, compare_payload
 from lagnet.diagnosis.motion.payload.fit import body_of
 from lagnet.diagnosis.motion.payload.found import PayloadFound
