@@ -42,7 +42,9 @@ def scored(
         "wrong": [f"{e.effect} at {e.joint}" for e in effects if not _says(e, cause, joints)],
         "found": bool(right),
     }
-    for effect in right if cause is not None else ():
+    if cause is None:
+        return row
+    for effect in right:
         for p in effect.parameters:
             if cause.parameter == p.name and effect.effect == cause.effect:
                 row["error"] = abs(p.value / cause.value - 1.0)
