@@ -1,6 +1,6 @@
 """Servo arms that MuJoCo moves, with something hidden: what does a diagnosis on motion name, and what wrongly?
 
-python -m validation.motion_concealed.study [--quick] [--plants 30] [--seed 11]
+python -m validation.motion_concealed.study [--quick] [--plants 30] [--seed 11] [--out FILE]
 """
 
 from __future__ import annotations
@@ -62,9 +62,11 @@ def _says(claim: EffectFound, cause: Cause | None, joints: Sequence[str]) -> boo
     return bool(names & meant) and len(names) <= MOST_TIED and at
 
 
-def run(plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS) -> dict[str, Any]:
-    """All plants of a seed; what is hidden and where goes round in turn."""
-    cases = []
+def run(
+    plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS, path: Path | None = None
+) -> dict[str, Any]:
+    """All plants of a seed, written after each; what is hidden and where goes round in turn."""
+    cases: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         for index in range(plants):
             effect = IN_TURN[index % len(IN_TURN)]
@@ -74,7 +76,21 @@ def run(plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS) ->
             row = scored(case.name, case.cause, case.robot.joints, result.effects)
             cases.append(row | {"processor_seconds": round(time.process_time() - begun, 1)})
             print(json.dumps(cases[-1]), flush=True)
-    return {"study": "motion_concealed", "seed": seed, "figures": figures(cases), "cases": cases}
+            if path is not None:
+                write_result(path, seed, cases)
+    return result_of(seed, cases)
+
+
+def result_of(seed: int, cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What result.json holds."""
+    found = figures(cases)
+    return {"study": "motion_concealed", "seed": seed, "figures": found, "cases": list(cases), "passed": judge(found)}
+
+
+def write_result(path: Path, seed: int, cases: Sequence[dict[str, Any]]) -> None:
+    """Writes result.json."""
+    text = json.dumps(result_of(seed, cases), indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
 
 
 def figures(cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -113,17 +129,14 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="two pendulums, short; writes nothing")
     parser.add_argument("--plants", type=int, default=FULL)
     parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--out", type=Path, default=HERE / "result.json", help="file of the result")
     options = parser.parse_args()
     if options.quick:
         result = run(QUICK, options.seed, SHORT, ("pendulum",))
     else:
-        result = run(options.plants, options.seed, LONG)
-    passed = judge(result["figures"])
-    print(json.dumps(result["figures"] | {"passed": passed}, indent=1))
-    if not options.quick:
-        text = json.dumps(result | {"passed": passed}, indent=1, ensure_ascii=False, allow_nan=False)
-        (HERE / "result.json").write_text(text + "\n", encoding="utf-8")
-    return 0 if all(passed.values()) else 1
+        result = run(options.plants, options.seed, LONG, path=options.out)
+    print(json.dumps(result["figures"] | {"passed": result["passed"]}, indent=1))
+    return 0 if all(result["passed"].values()) else 1
 
 
 if __name__ == "__main__":
