@@ -22,7 +22,7 @@ from lagnet.diagnosis.motion.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.diagnosis.motion.refitting import groups_of, without
-from lagnet.diagnosis.motion.selection import Rejected, relative_change
+from lagnet.diagnosis.motion.selection import NEAR_NOMINAL, Rejected, relative_change
 
 ITERATIONS = 6  # in each round: a fit joint by joint is near
 
@@ -132,7 +132,7 @@ def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
         return ()
     limit = found.case.limits.change
     changes = {e: relative_change(found.case.law, found.named_law, e) for e in found.named.effects}
-    return tuple(Rejected(e, "near_nominal", change, limit) for e, change in changes.items() if change < limit)
+    return tuple(Rejected(e, NEAR_NOMINAL, change, limit) for e, change in changes.items() if change < limit)
 
 
 def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiagnosis:
