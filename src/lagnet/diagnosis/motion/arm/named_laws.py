@@ -93,37 +93,60 @@ def fit_named_laws(
         laws: nominal, shape (dof, len(LAW)), for joints that do not move.
         found: diagnoses joint by joint.
     """
-    out = dict(found)
-    while True:
-        refitted = _refitted(problem, fitted, laws, out)
-        nominal = {(j, r.effect) for j, d in refitted.items() for r in _near_nominal(d)}
-        if not nominal:
-            return refitted
-        out = {j: _without(d, _near_nominal(refitted[j])) for j, d in out.items()}
+    out = _refitted(problem, fitted, laws, found)
+    while nominal := {j: near for j, d in out.items() if (near := _near_nominal(d))}:
+        out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
+        out = _refitted(problem, fitted, laws, out)
+    return _with_intervals(problem, fitted, laws, out)
+
+
+def _arm_of(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> ArmLaws | None:
+    """The named laws with what is free in them, None where nothing is."""
+    laws, free = laws.copy(), {}
+    for joint, diagnosis in found.items():
+        laws[joint] = diagnosis.named_law
+        if groups := groups_of(diagnosis.case, diagnosis.named.effects):
+            free[joint] = free_coordinates(groups, laws[joint], sizes_of(diagnosis.case.scales))
+    return ArmLaws(ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found)), laws, free) if free else None
+
+
+def _floors(found: Mapping[int, JointDiagnosis]) -> np.ndarray:
+    return np.array([d.case.floor for d in found.values()])
 
 
 def _refitted(
     problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
 ) -> dict[int, JointDiagnosis]:
     """The named laws fitted to the whole arm, unless held-out motion is predicted worse by them."""
-    free = {j: groups_of(d.case, d.named.effects) for j, d in found.items()}
-    if not any(free.values()):
+    arm, floors = _arm_of(problem, fitted, laws, found), _floors(found)
+    if arm is None:
         return dict(found)
-    laws, floors = laws.copy(), np.array([d.case.floor for d in found.values()])
-    for joint, diagnosis in found.items():
-        laws[joint] = diagnosis.named_law
-    coordinates = {j: free_coordinates(g, laws[j], sizes_of(found[j].case.scales)) for j, g in free.items() if g}
-    arm = ArmLaws(ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found)), laws, coordinates)
-    limits = {"nearest": arm.nearest, "iterations": ITERATIONS}
-    values = fit_values(arm.errors, arm.sensitivities, arm.read(), arm.sizes, floors, **limits)
+    slopes, start = arm.sensitivities, arm.read()
+    values = fit_values(arm.errors, slopes, start, arm.sizes, floors, nearest=arm.nearest, iterations=ITERATIONS)
     held, new = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), arm.write(values)
-    before, after = (held.scores(held.errors(x), floors) for x in (laws, new))
+    before, after = (held.scores(held.errors(x), floors) for x in (arm.laws, new))
     if advantage(before, after)[0] < 0.0:
         return dict(found)
+    return {j: _with_law(d, new[j]) for j, d in found.items()}
+
+
+def _with_intervals(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The diagnoses with 95 % intervals of every free law parameter by name."""
+    arm = _arm_of(problem, fitted, laws, found)
+    if arm is None:
+        return dict(found)
+    values = arm.read()
     here, coupled = arm.errors(values), sensitivities_of(arm.errors, arm.sizes, arm.nearest)
-    half, _ = half_widths(here, coupled(values, here), floors, np.diag(arm.sizes))
-    ends = _by_joint(arm, values, half)
-    return {j: _with_law(d, new[j], ends.get(j, d.intervals)) for j, d in found.items()}
+    half, _ = half_widths(here, coupled(values, here), _floors(found), np.diag(arm.sizes))
+    rows = [(j, group) for j, c in arm.free.items() for group in c.groups]
+    ends: dict[int, dict[str, tuple[float, float]]] = {}
+    for (joint, group), value, width in zip(rows, values, half, strict=True):
+        ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
+    return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
 
 
 def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
@@ -145,17 +168,8 @@ def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiag
     return replace(found, named=named, comparisons=kept, rejected=(*found.rejected, *rejected), law=law)
 
 
-def _by_joint(arm: ArmLaws, values: np.ndarray, half: np.ndarray) -> dict[int, dict[str, tuple[float, float]]]:
-    """95 % interval of every free law parameter of each joint, by name."""
-    rows = [(j, group) for j, c in arm.free.items() for group in c.groups]
-    out: dict[int, dict[str, tuple[float, float]]] = {}
-    for (joint, group), value, width in zip(rows, values, half, strict=True):
-        out.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
-    return out
-
-
-def _with_law(found: JointDiagnosis, law: np.ndarray, intervals: dict[str, tuple[float, float]]) -> JointDiagnosis:
+def _with_law(found: JointDiagnosis, law: np.ndarray) -> JointDiagnosis:
     """A diagnosis with another named law; the complete law with it where it is the same."""
     named = replace(found.named, fitted=replace(found.named.fitted, law=law))
     complete = law if np.array_equal(found.law, found.named_law) else found.law
-    return replace(found, named=named, intervals=intervals, law=complete)
+    return replace(found, named=named, law=complete)
