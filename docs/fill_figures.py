@@ -1,4 +1,4 @@
-"""Write the figures in README.md and docs from the result files of the studies, so that no figure is typed by hand.
+"""Write the figures in README.md, docs and the studies' pages from result files, so that no figure is typed by hand.
 
 python docs/fill_figures.py [--check]
 
@@ -80,9 +80,9 @@ def filled(text: str, where: str) -> str:
 
 
 def pages() -> dict[Path, str]:
-    """Every Markdown file of README and docs, filled."""
-    files = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
-    return {f: filled(f.read_text(encoding="utf-8"), f.name) for f in files}
+    """Every Markdown file of README, docs and the studies, filled."""
+    files = [ROOT / "README.md", *sorted(DOCS.glob("*.md")), *sorted((ROOT / "validation").glob("*/README.md"))]
+    return {f: filled(f.read_text(encoding="utf-8"), str(f.relative_to(ROOT))) for f in files}
 
 
 if __name__ == "__main__":

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.one_joint import JointSeries, Windows, roll_out
+from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.parameters import law_vector
 
@@ -24,6 +26,17 @@ def series(command: np.ndarray, q0: float = 0.0, load: float = 0.0) -> JointSeri
 def rolled(command: np.ndarray, q0: float = 0.0, load: float = 0.0, **law: float) -> np.ndarray:
     windows = Windows(np.array([0]), np.array([len(TIME) - 1]), np.array([0]), np.zeros(1))
     return roll_out(law_vector(**law), series(command, q0, load), windows, FINE)[0]
+
+
+def swinging_alone(law: np.ndarray) -> np.ndarray:
+    """One joint of 1 kg m² without gravity, let go at 1 rad, by the rollout of a whole arm."""
+    body = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+    still = np.zeros((1, 3))
+    axis, inertia = np.array([[0.0, 1.0, 0.0]]), body[None]
+    tree = KinematicTree(
+        np.array([-1]), np.eye(3)[None], still, axis, np.array([False]), inertia, np.zeros(1), still[0]
+    )
+    return roll_out_arm(tree, law[None], TIME, np.zeros((TIME.size, 1)), np.ones(1), step=FINE)[:, 0]
 
 
 def test_a_spring_swings_as_a_cosine():
@@ -56,6 +69,21 @@ def test_a_joint_below_break_away_never_creeps():
     q = rolled(np.full_like(TIME, 0.05), kp=10.0, coulomb=0.2, static=0.4)
     assert np.ptp(q) == 0.0
     assert rolled(np.full_like(TIME, 0.07), kp=10.0, coulomb=0.2, static=0.4)[-1] > 0.0
+
+
+def test_a_joint_that_reverses_inside_its_break_away_band_stays_there():
+    law = {"kp": 25.0, "coulomb": 2.0, "static": 5.0}  # swings lose 0.16 rad each: 1, 0.84, ..., 0.2 < 7/25 = 0.28
+    q = rolled(np.zeros_like(TIME), 1.0, **law)
+    assert abs(q[-1] + 0.2) < AT_STOPS
+    assert np.ptp(q[-50:]) == 0.0
+    arm = swinging_alone(law_vector(**law))
+    assert np.abs(arm - q).max() < AT_STOPS
+
+
+def test_a_joint_that_passes_rest_beyond_its_break_away_band_goes_on():
+    free, held = (rolled(np.zeros_like(TIME), 1.0, kp=25.0, coulomb=2.0, static=s) for s in (0.0, 1.0))
+    until = 3.0 * np.pi / 5.0 > TIME  # to the reversal at 0.52 rad, beyond 3/25
+    assert np.abs(free - held)[until].max() < AT_STOPS
 
 
 def test_a_self_locking_gear_holds_its_load_when_the_drive_is_off():

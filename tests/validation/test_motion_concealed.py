@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-from validation.motion_concealed.plants import ENCODER, LISTED, SERVO, UNLISTED, Cause, Plant, plant
+from validation.motion_concealed.plants import ENCODER, LISTED, SERVO, UNLISTED, Cause, plant
 from validation.motion_concealed.study import figures, judge, scored
 
+from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, NamedParameter
 from lagnet.models.corrected.servo_driven import ServoDrivenModel
 
 SECONDS = 20.0
 
 
-def claim(effect: str, joint: str = "lower", tied: tuple[str, ...] = (), **values: float) -> SimpleNamespace:
-    parameters = [SimpleNamespace(name=n, value=x, ci95=(0.9 * x, 1.1 * x)) for n, x in values.items()]
-    return SimpleNamespace(effect=effect, joint=joint, tied_with=tied, parameters=parameters)
+def claim(effect: str, joint: str = "lower", tied: tuple[str, ...] = (), **values: float) -> EffectFound:
+    parameters = tuple(NamedParameter(n, x, "", (0.9 * x, 1.1 * x)) for n, x in values.items())
+    return EffectFound(effect, joint, "named", tied, parameters, EffectEvidence(1.0, 0.0, 1.0, None, None), "")
 
 
-def told(cause: Cause | None, *claims: SimpleNamespace) -> dict:
-    case = Plant("one", SimpleNamespace(joints=("lower",)), None, (), cause)  # type: ignore[arg-type]
-    return scored(case, SimpleNamespace(effects=claims))  # type: ignore[arg-type]
+def told(cause: Cause | None, *claims: EffectFound) -> dict:
+    return scored("one", cause, ("lower",), claims)
 
 
 def test_a_leg_that_hides_nothing_moves_as_its_nominal_model(tmp_path):

@@ -17,9 +17,10 @@ from lagnet.servos.nominal import NominalServo
 from lagnet.servos.servo_file import servo_of_values
 
 DATA = Path(os.environ.get("LAGNET_DATA_DIR", Path(__file__).parents[3] / "shared" / "data"))
-STEP, SAMPLE = 0.001, 0.02  # [s] of the engine, of the recording
+STEP, SAMPLE = 2.5e-4, 0.02  # [s] of the engine, of the recording
 ENCODER = 2.0 * np.pi / 4096.0  # [rad]
 RIGID = [0.9999, 0.9999, 0.001, 0.5, 2.0]  # solimp of dry friction, which else creeps
+STOP = [2.0 * STEP, 1.0]  # solref of dry friction: MuJoCo's own 0.02 s make it viscous at low speed
 SERVO = {"kp": 8.0, "kd": 0.3, "viscous": 0.15, "coulomb": 0.03, "rotor": 0.01}
 STILL = 2e-3  # [rad/s] below which break-away friction acts
 LISTED: dict[str, tuple[str, float, float]] = {  # effect → parameter, least and greatest value
@@ -151,7 +152,7 @@ def _real_model(robot: Any, cause: Cause | None) -> mujoco.MjModel:
     for joint, name in enumerate(robot.joints):
         law, dof = SERVO | _changed(cause, joint), model.joint(name).dofadr[0]
         model.dof_damping[dof], model.dof_frictionloss[dof] = law["viscous"], law["coulomb"]
-        model.dof_armature[dof], model.dof_solimp[dof] = law["rotor"], RIGID
+        model.dof_armature[dof], model.dof_solimp[dof], model.dof_solref[dof] = law["rotor"], RIGID, STOP
         model.jnt_limited[model.joint(name).id] = 0
     return model
 

@@ -1,6 +1,6 @@
 """Servo arms that MuJoCo moves, with something hidden: what does a diagnosis on motion name, and what wrongly?
 
-python -m validation.motion_concealed.study [--quick] [--plants 30] [--seed 11]
+python -m validation.motion_concealed.study [--quick] [--plants 30] [--seed 11] [--out FILE]
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.motion.diagnose import MotionDiagnosis, diagnose_motion
-from validation.motion_concealed.plants import LISTED, UNLISTED, Plant, plant
+from lagnet.diagnosis.motion.diagnose import diagnose_motion
+from lagnet.diagnosis.verdict.verdict import EffectFound
+from validation.motion_concealed.plants import LISTED, UNLISTED, Cause, plant
 
 HERE = Path(__file__).resolve().parent
 FULL, QUICK = 30, 2
@@ -29,47 +30,67 @@ MOST_TIED = 3
 LEAST = {"precision": 0.97, "recall": 0.92}
 
 
-def scored(case: Plant, result: MotionDiagnosis) -> dict[str, Any]:
+def scored(
+    plant_name: str, cause: Cause | None, joints: Sequence[str], effects: Sequence[EffectFound]
+) -> dict[str, Any]:
     """Which claims are right, whether the cause was found, and how far its parameter is off."""
-    right = [e for e in result.effects if _says(e, case)]
+    right = [e for e in effects if _says(e, cause, joints)]
     row: dict[str, Any] = {
-        "plant": case.name,
-        "cause": None if case.cause is None else asdict(case.cause),
-        "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in result.effects],
-        "wrong": [f"{e.effect} at {e.joint}" for e in result.effects if not _says(e, case)],
+        "plant": plant_name,
+        "cause": None if cause is None else asdict(cause),
+        "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in effects],
+        "wrong": [f"{e.effect} at {e.joint}" for e in effects if not _says(e, cause, joints)],
         "found": bool(right),
     }
+    if cause is None:
+        return row
     for effect in right:
-        for p in effect.parameters if case.cause is not None else ():
-            if case.cause.parameter == p.name and effect.effect == case.cause.effect:
-                row["error"] = abs(p.value / case.cause.value - 1.0)
-                row["covered"] = p.ci95[0] <= case.cause.value <= p.ci95[1]
+        for p in effect.parameters:
+            if cause.parameter == p.name and effect.effect == cause.effect:
+                row["error"] = abs(p.value / cause.value - 1.0)
+                row["covered"] = p.ci95[0] <= cause.value <= p.ci95[1]
     return row
 
 
-def _says(claim: Any, case: Plant) -> bool:
+def _says(claim: EffectFound, cause: Cause | None, joints: Sequence[str]) -> bool:
     """Whether a claim, with at most two ties beside it, names the cause at its joint."""
-    if case.cause is None or case.cause.effect in UNLISTED:
+    if cause is None or cause.effect in UNLISTED:
         return False
     names = {claim.effect, *claim.tied_with}
-    meant = {case.cause.effect, *ALSO_SAYS.get(case.cause.effect, ())}
-    anywhere = case.cause.effect == "payload"
-    at = anywhere or claim.joint == case.robot.joints[case.cause.joint]
+    meant = {cause.effect, *ALSO_SAYS.get(cause.effect, ())}
+    at = cause.effect == "payload" or claim.joint == joints[cause.joint]
     return bool(names & meant) and len(names) <= MOST_TIED and at
 
 
-def run(plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS) -> dict[str, Any]:
-    """All plants of a seed; what is hidden and where goes round in turn."""
-    cases = []
+def run(
+    plants: int, seed: int, seconds: float, kinds: Sequence[str] = KINDS, path: Path | None = None
+) -> dict[str, Any]:
+    """All plants of a seed, written after each; what is hidden and where goes round in turn."""
+    cases: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         for index in range(plants):
             effect = IN_TURN[index % len(IN_TURN)]
             case = plant(seed, index, kinds[index % len(kinds)], effect, seconds, Path(folder))
             begun = time.process_time()
             result = diagnose_motion(case.recordings[:2], case.robot, case.recordings[2:], servo=case.servo)
-            cases.append(scored(case, result) | {"processor_seconds": round(time.process_time() - begun, 1)})
+            row = scored(case.name, case.cause, case.robot.joints, result.effects)
+            cases.append(row | {"processor_seconds": round(time.process_time() - begun, 1)})
             print(json.dumps(cases[-1]), flush=True)
-    return {"study": "motion_concealed", "seed": seed, "figures": figures(cases), "cases": cases}
+            if path is not None:
+                write_result(path, seed, cases)
+    return result_of(seed, cases)
+
+
+def result_of(seed: int, cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What result.json holds."""
+    found = figures(cases)
+    return {"study": "motion_concealed", "seed": seed, "figures": found, "cases": list(cases), "passed": judge(found)}
+
+
+def write_result(path: Path, seed: int, cases: Sequence[dict[str, Any]]) -> None:
+    """Writes result.json."""
+    text = json.dumps(result_of(seed, cases), indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
 
 
 def figures(cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -108,17 +129,14 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="two pendulums, short; writes nothing")
     parser.add_argument("--plants", type=int, default=FULL)
     parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--out", type=Path, default=HERE / "result.json", help="file of the result")
     options = parser.parse_args()
     if options.quick:
         result = run(QUICK, options.seed, SHORT, ("pendulum",))
     else:
-        result = run(options.plants, options.seed, LONG)
-    passed = judge(result["figures"])
-    print(json.dumps(result["figures"] | {"passed": passed}, indent=1))
-    if not options.quick:
-        text = json.dumps(result | {"passed": passed}, indent=1, ensure_ascii=False, allow_nan=False)
-        (HERE / "result.json").write_text(text + "\n", encoding="utf-8")
-    return 0 if all(passed.values()) else 1
+        result = run(options.plants, options.seed, LONG, path=options.out)
+    print(json.dumps(result["figures"] | {"passed": result["passed"]}, indent=1))
+    return 0 if all(result["passed"].values()) else 1
 
 
 if __name__ == "__main__":

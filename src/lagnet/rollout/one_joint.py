@@ -2,9 +2,9 @@
 
 Each step solves (M + h D + h² k/4) v' = M v + h (τ − k h v/4 − h F sign(v')) for the speed v' and the friction together
 (Moreau's time stepping): |impulse| ≤ h F and v' = 0, or impulse = h F against v'. A joint that sticks has v' = 0 to the
-last bit, so that it never creeps. Springs are taken at mid-step (no numerical damping), and so are dampers where the
-step resolves them, else towards its end (stable at any step). Sources: Karnopp 1985; Stewart & Trinkle 1996; Moreau
-1988.
+last bit, so that it never creeps; one that reverses is at rest between, and goes on only beyond break-away friction.
+Springs are taken at mid-step (no numerical damping), and so are dampers where the step resolves them, else towards its
+end (stable at any step). Sources: Karnopp 1985; Stewart & Trinkle 1996; Moreau 1988.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from lagnet.servos.parameters import (
     ROTOR,
     SPRING,
     SPRING_REST,
+    STATIC,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -159,4 +160,9 @@ def next_speed(p, v, m, torque, stiff, damp, brake, load, h):  # pragma: no cove
     dry = h * dry_friction(p, v, load, torque - p[OFFSET] - brake * v, side)
     if abs(free) <= dry:
         return 0.0
-    return (free - side * dry) / (m + h * (1.0 - early) * damping + 0.25 * h * h * stiff)
+    new = (free - side * dry) / (m + h * (1.0 - early) * damping + 0.25 * h * h * stiff)
+    if p[STATIC] != 0.0 and v * new < 0.0:  # it passes rest
+        motor = torque + damp * v  # there
+        if abs(motor - load) <= dry_friction(p, 0.0, load, motor - p[OFFSET], side):
+            return 0.0
+    return new

@@ -2,7 +2,8 @@
 
 Each step of h solves M v' + h D v' + h² K/4 v' = M v + h (τ − b − K h v/4) − h F sign(v') for all speeds and dry
 frictions together: the minimum of ½ v'ᵀ A v' − nᵀ v' + h Σ Fᵢ |v'ᵢ|, found joint by joint (projected Gauss–Seidel).
-A joint whose net torque stays below its friction gets v' = 0 to the last bit.
+A joint whose net torque stays below its friction gets v' = 0 to the last bit; one that reverses is at rest between, and
+goes on only beyond its break-away friction.
 Sources: Moreau 1988; Stewart & Trinkle 1996.
 """
 
@@ -31,6 +32,7 @@ from lagnet.servos.parameters import (
     ROTOR,
     SPRING,
     SPRING_REST,
+    STATIC,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -89,7 +91,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
     dof, last = q.size, time.size - 1
     mass, bias, a = np.empty((dof, dof)), np.empty(dof), np.empty((dof, dof))
     free, load, total, before = np.empty(dof), np.empty(dof), np.zeros(dof), np.empty(dof)
-    motor = np.empty(dof)
+    motor, push = np.empty(dof), np.empty(dof)
     cursor = np.zeros(dof, dtype=np.int64)
     out[0] = q
     for n in range(last):
@@ -120,6 +122,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                     total[j] = 0.0
                 stiff += p[SPRING]
                 motor[j] = torque - brake * v[j]
+                push[j] = torque + damp * v[j] + p[OFFSET] - load[j]  # at rest
                 damping = viscous + brake + damp
                 own = p[LOAD_GAIN] * mass[j, j] + p[ROTOR]
                 early = explicit_share(damping, own, h)
@@ -131,7 +134,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 a[j, j] += p[ROTOR] + h * (1.0 - early) * damping + 0.25 * h * h * stiff
             for j in range(dof):  # q moves half a step by the old speed, half by the new
                 q[j] += 0.5 * h * v[j]
-            _settle(parameters, a, free, load, motor, h, v)
+            _settle(parameters, a, free, load, motor, push, h, v)
             for j in range(dof):
                 q[j] += 0.5 * h * v[j]
                 if not abs(q[j]) < FARTHEST:
@@ -151,19 +154,23 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
 
 
 @njit(cache=True, error_model="numpy")
-def _settle(parameters, a, free, load, motor, h, v):  # pragma: no cover - compiled
-    """Speeds at the end of a step with the dry frictions that go with them, written into v."""
+def _settle(parameters, a, free, load, motor, push, h, v):  # pragma: no cover - compiled
+    """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest."""
     old = v.copy()
     for _ in range(SWEEPS):
         moved = 0.0
         for j in range(v.size):
-            rest = free[j]
+            rest, alone = free[j], h * push[j]
             for m in range(v.size):
                 if m != j:
                     rest -= a[j, m] * v[m]
+                    alone -= a[j, m] * (v[m] - old[m])
             side = 1.0 if rest > 0.0 else -1.0
             dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
             new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]
+            passes = parameters[j, STATIC] != 0.0 and old[j] * new < 0.0
+            if passes and abs(alone) <= h * dry_friction(parameters[j], 0.0, load[j], motor[j], side):
+                new = 0.0  # it rests between
             moved = max(moved, abs(new - v[j]))
             v[j] = new
         if moved < STILL:

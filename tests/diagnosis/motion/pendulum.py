@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.recordings.recording import Recording
 
 ENCODER = 2.0 * np.pi / 4096.0
+FINER = 4  # steps of the engine in a millisecond, by which dry friction stops in time
 MJCF = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody><body name="arm">
 <joint name="servo" type="hinge" axis="0 1 0" range="-3 3" damping="{damping}" frictionloss="{friction}"
 armature="{rotor}"/>
@@ -33,10 +34,10 @@ def commands(seconds: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def record(path: Path, seconds: float, seed: int, delay: int = 0, dead_band: float = 0.0) -> Recording:
-    """A recording of the plant in a file; delay in steps of 1 ms; friction close to rigid."""
+    """A recording of the plant in a file; delay in steps of 1 ms; dry friction almost rigid, not viscous near rest."""
     model = mujoco.MjModel.from_xml_path(str(path))
-    model.opt.timestep, model.opt.integrator = 0.001, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    model.dof_solimp[:] = [0.9999, 0.9999, 0.001, 0.5, 2.0]
+    model.opt.timestep, model.opt.integrator = 0.001 / FINER, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    model.dof_solimp[:], model.dof_solref[:] = [0.9999, 0.9999, 0.001, 0.5, 2.0], [0.002 / FINER, 1.0]
     data = mujoco.MjData(model)
     time, command = commands(seconds, seed)
     held, q = np.repeat(command[:, 0], 20), np.empty((time.size, 1))
@@ -47,5 +48,5 @@ def record(path: Path, seconds: float, seed: int, delay: int = 0, dead_band: flo
             error = u - data.qpos[0]
             beyond = np.sign(error) * max(abs(error) - dead_band, 0.0)
             data.ctrl[0] = data.qpos[0] + beyond
-            mujoco.mj_step(model, data)
+            mujoco.mj_step(model, data, FINER)
     return Recording(time, ENCODER * np.round(q / ENCODER), None, ("servo",), command=command, path=f"run_{seed}")

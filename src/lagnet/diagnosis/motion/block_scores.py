@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import log
+
 import numpy as np
 
 from lagnet.diagnosis.motion.fitting import JointData
@@ -9,6 +11,7 @@ from lagnet.diagnosis.motion.fitting import JointData
 LONGEST = 2.0  # [s] of a block
 BLOCKS = 40  # that there should be at least
 SHORTEST = 0.25  # [s] of a block
+GREATEST_ODDS = 99.0  # powers of ten that are told
 
 
 def block_scores(data: JointData, law: np.ndarray, floor: float) -> np.ndarray:
@@ -36,3 +39,8 @@ def advantage(without: np.ndarray, with_it: np.ndarray) -> tuple[float, float]:
     gains = without - with_it
     error = float(np.std(gains) / np.sqrt(len(gains))) + 1e-12
     return float(gains.mean()), float(gains.mean() / error)
+
+
+def log10_odds(errors: float) -> float:
+    """½ x |x| / ln 10, within ±`GREATEST_ODDS`: the odds of two laws whose scores differ by x standard errors."""
+    return max(-GREATEST_ODDS, min(GREATEST_ODDS, 0.5 * errors * abs(errors) / log(10.0)))

@@ -19,7 +19,7 @@ from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
 LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
 EVERY = 4  # one window in so many of the fitted recordings is for validation
 LONG = 10.0  # [s] of a rollout to which the complete law is fitted
-SAMPLES = 15000  # that a search uses; the last fit uses all
+SAMPLES = 8000  # that a search uses; the last fit uses all
 ESTIMATED: tuple[tuple[str, ...], ...] = (("kp",), ("viscous",))  # free from the start where no servo is given
 
 
@@ -55,7 +55,7 @@ def joint_case(
     if base and np.ptp(series.enabled) > 0.0:  # friction alone acts while the drive is off
         base = (*base, ("back_emf",))
     floor = max(0.5 * resolution, LEAST_ERROR)
-    quick = min(2.0 * problem.step, 0.01)
+    quick = min(problem.step, 0.004)
     data, validation = (JointData(series, _thinned(w, series, SAMPLES), quick) for w in (to_fit, to_validate))
     scales = _scales(series, speed, moving, law, start)
     return JointCase(data, validation, law, start.law, start.scale_is_set, base, scales, floor, excited, limits)
@@ -70,12 +70,17 @@ def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
 
 
 def _divided(problem: MotionProblem, fitted: int, joint: int, length: float | None = None) -> tuple[Windows, Windows]:
-    """Windows to fit, and windows for validation: all that is held out, and every fourth of the others."""
+    """Windows to fit, and windows for validation: long ones of all that is held out, and every fourth of the others.
+
+    Effects of rest and of stops show where the state comes from a rollout and not from a measurement nearby.
+    """
     windows, inside = problem.windows(joint, length), _inside(problem, fitted)
-    of_fit = np.flatnonzero(inside[windows.first])
-    validation = ~inside[windows.first]
-    validation[of_fit[2::EVERY]] = True
-    return _pick(windows, np.flatnonzero(~validation)), _pick(windows, np.flatnonzero(validation))
+    of_fit = _pick(windows, np.flatnonzero(inside[windows.first]))
+    long = problem.windows(joint, LONG)
+    held = _pick(long, np.flatnonzero(~inside[long.first]))
+    seen = np.zeros(len(of_fit.first), dtype=bool)
+    seen[2::EVERY] = True
+    return _pick(of_fit, np.flatnonzero(~seen)), _joined(held, _pick(of_fit, np.flatnonzero(seen)))
 
 
 def with_long_windows(case: JointCase, problem: MotionProblem, fitted: int, joint: int) -> JointCase:
@@ -95,6 +100,10 @@ def windows_to_fit(problem: MotionProblem, fitted: int, joint: int, length: floa
 
 def _pick(windows: Windows, rows: np.ndarray) -> Windows:
     return Windows(windows.first[rows], windows.last[rows], windows.floor[rows], windows.speed[rows])
+
+
+def _joined(one: Windows, other: Windows) -> Windows:
+    return Windows(*(np.concatenate([getattr(w, n) for w in (one, other)]) for n in Windows.__dataclass_fields__))
 
 
 def encoder_step(q: np.ndarray) -> float:

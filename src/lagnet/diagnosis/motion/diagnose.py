@@ -8,11 +8,12 @@ from typing import Any, cast
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
 from lagnet.diagnosis.motion.cases import joint_case
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis, diagnose_joint
-from lagnet.diagnosis.motion.payload import judge_payload
+from lagnet.diagnosis.motion.payload.judgement import judge_payload
 from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
@@ -97,6 +98,7 @@ def diagnose_motion(
     limits = limits or SelectionLimits()
     joints = _diagnose_joints(problem, len(fit_on), servo, limits)
     apart = {i: d for i, d in enumerate(joints) if d is not None}
+    apart = fit_named_laws(problem, len(fit_on), servo.laws, apart)
     payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
     joints = tuple(beside.get(i) for i in range(len(joints)))
     loaded = bodies if payload is None else with_body(bodies, payload.body)

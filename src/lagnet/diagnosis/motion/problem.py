@@ -19,8 +19,9 @@ from lagnet.servos.command_delay import command_integral
 
 SMOOTHING = 0.16  # [s] stretch over which a cubic gives speed and acceleration
 SLOPES = 0.1  # [s] between poses at which the derivative of the load is computed
-WINDOW = (1.0, 4.0)  # [s] least and greatest length of a rollout from measured positions
+WINDOW = (2.0, 4.0)  # [s] least and greatest length of a rollout from measured positions
 WINDOWS = 60  # that there should be at least
+REACH = 0.3  # of a window, by which its start may move to where its state is surer
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +65,41 @@ class MotionProblem:
         return float(sum(time[run.last] - time[run.first] for run in self.runs))
 
     def windows(self, joint: int, length: float | None = None) -> Windows:
-        """Windows of `length` seconds from a joint's measured position and speed; None: shorter for short ones."""
+        """Windows of about `length` seconds from a joint's measured position and speed; None: shorter for short ones.
+
+        They start where that state is surest, see `surest_edges`.
+        """
         length = length or float(np.clip(self.duration / WINDOWS, *WINDOW))
         time, rows = self.series[joint].time, []
         for run in self.runs:
             count = max(1, round((time[run.last] - time[run.first]) / length))
-            edges = np.linspace(run.first, run.last, count + 1).astype(int)
+            edges = surest_edges(self.speed[run.first : run.last + 1, joint], count) + run.first
             rows += [(a, b, run.first) for a, b in pairwise(edges) if b > a]
         first, last, floor = (np.array(column) for column in zip(*rows, strict=True))
         speed = np.where(first == floor, 0.0, self.speed[first, joint])
         return Windows(first, last, floor, speed)
+
+
+def surest_edges(speed: np.ndarray, count: int) -> np.ndarray:
+    """First, inner and last samples of `count` stretches, shape (count + 1,), each inner one where |dv/dt| is least.
+
+    A speed smoothed over `SMOOTHING` seconds is wrong where it changes within them: before a joint that sticks breaks
+    away it is not zero, and a rollout from there starts to slip at once. At rest and in even motion it is right.
+
+    Args:
+        speed: shape (n,) or (n, joints), smoothed speeds of a trajectory.
+        count: number of stretches; edges move by up to `REACH` of a stretch.
+    """
+    last = len(speed) - 1
+    edges, change = np.linspace(0, last, count + 1), np.abs(np.gradient(speed, axis=0))
+    change = change if change.ndim == 1 else change.max(axis=1)
+    reach = int(REACH * last / count)
+    out = [0]
+    for edge in edges[1:-1].astype(int):
+        near = np.arange(max(0, edge - reach), min(last, edge + reach) + 1)
+        near = near[np.argsort(np.abs(near - edge), kind="stable")]  # of equal ones the nearest
+        out.append(int(near[np.argmin(change[near])]))
+    return np.array([*out, last])
 
 
 def pose_motion_problem(

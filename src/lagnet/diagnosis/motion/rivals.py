@@ -1,14 +1,15 @@
 """Each named effect against its rivals: replaced by one, all parameters refitted, compared on the same held-out blocks.
 
 A rival that predicts as well is tied; one that predicts better, or as well with fewer effects, replaces the effect. A
-rival that contains the effect, or has more parameters, predicts as well by construction and is no tie.
+rival that contains the effect, or has more parameters, predicts as well by construction and is no tie. A special case
+of an effect takes its place where held-out motion does not ask for more.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lagnet.diagnosis.motion.block_scores import advantage
+from lagnet.diagnosis.motion.block_scores import advantage, log10_odds
 from lagnet.diagnosis.motion.fitting import robust_scale
 from lagnet.diagnosis.motion.joint_case import JointCase
 from lagnet.diagnosis.motion.refitting import Selection, refit, starts_with, without
@@ -63,6 +64,10 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             best = (rival, lead, lead_errors)
         if len(servo_effect(rival).parameters) > own or effect in servo_effect(rival).contains:
             continue
+        if rival in servo_effect(effect).contains:  # as good with fewer parameters, or no rival at all
+            if _needless(case, found, selected):
+                better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
+            continue
         if lead_errors < -case.limits.errors and lead < -case.limits.gain:
             better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
         elif lead_errors < case.limits.tie or lead < 0.1 * max(gain, 0.0):
@@ -70,7 +75,7 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             simpler = _simpler(case, found, scale)
             if len(simpler.effects) < len(selected.effects) and _as_good(case, simpler, selected):
                 better = simpler if better is None or simpler.blocks.mean() < better.blocks.mean() else better
-    odds = None if best is None else max(-99.0, min(99.0, 0.5 * best[2] * abs(best[2]) / 2.302585))
+    odds = None if best is None else log10_odds(best[2])
     return Comparison(effect, gain, errors, tuple(tied), None if best is None else best[0], odds), better
 
 
@@ -87,9 +92,15 @@ def _as_good(case: JointCase, one: Selection, other: Selection) -> bool:
     return advantage(one.blocks, other.blocks)[0] < case.limits.gain
 
 
+def _needless(case: JointCase, special: Selection, general: Selection) -> bool:
+    """Whether held-out motion does not ask for the general law beyond its special case, as selection would."""
+    gain, errors = advantage(special.blocks, general.blocks)
+    return gain < case.limits.gain or errors < case.limits.errors
+
+
 def _rivals(case: JointCase, selected: Selection, effect: str) -> list[str]:
     named = set(servo_effect(effect).confused_with) | {
         n for n, law in SERVO_CATALOGUE.items() if effect in law.confused_with
     }
-    contained = {c for e in selected.effects for c in servo_effect(e).contains}
+    contained = {c for e in selected.effects if e != effect for c in servo_effect(e).contains}
     return [n for n in SERVO_CATALOGUE if n in named and n in case.excited and n not in {*selected.effects, *contained}]

@@ -21,6 +21,7 @@ from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
+NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
     "gain_error",
     "viscous_friction",
@@ -121,18 +122,22 @@ def _less_contained(selected: Selection, case: JointCase, scale: float) -> Selec
 def _backward(
     case: JointCase, selected: Selection, last: tuple[Rejected, ...]
 ) -> tuple[Selection, tuple[Rejected, ...]]:
-    """Backward elimination of effects that fail a rule, that of the least gain first."""
+    """Backward elimination of effects that fail a rule, that of the least gain first.
+
+    Before all go effects whose own values are nominal ones: what they gain is by other parameters that they set free
+    (static friction frees Coulomb's), beside which the effect that has those for its own seems to gain nothing.
+    """
     rejected = list(last)
     while selected.effects:
         scale = robust_scale(selected.fitted.residual, case.floor)
         selected = refit(case, selected.effects, selected.law, scale)
         fewer = [(e, without(case, selected, e, scale)) for e in selected.effects]
         tests = [(_tested(case, selected, w, e), w) for e, w in fewer]
-        worst = min((f for f in tests if f[0][1] is not None), key=lambda f: f[0][0], default=None)
-        if worst is None:
+        failed = [(gain, r, w) for (gain, r), w in tests if r is not None]
+        if not failed:
             break
-        (_, rejection), selected = worst
-        rejected += [] if rejection is None else [rejection]
+        _, rejection, selected = min(failed, key=lambda f: (f[1].rule != NEAR_NOMINAL, f[0]))
+        rejected.append(rejection)
     return selected, tuple(rejected)
 
 
@@ -141,23 +146,23 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     gain, errors = advantage(fewer.blocks, selected.blocks)
     predicted = case.validation.predict(np.array([selected.law, fewer.law]))
     difference = float(np.sqrt(np.mean((predicted[0] - predicted[1]) ** 2)))
-    change = _relative_change(case, selected, name)
+    change = relative_change(case.law, selected.law, name)
     limits = case.limits
     for rule, value, limit in (
         ("no_holdout_gain", gain, limits.gain),
         ("not_significant", errors, limits.errors),
         ("below_resolution", difference, limits.steps * case.floor),
-        ("near_nominal", change, limits.change),
+        (NEAR_NOMINAL, change, limits.change),
     ):
         if value < limit:
             return gain, Rejected(name, rule, value, limit)
     return gain, None
 
 
-def _relative_change(case: JointCase, selected: Selection, name: str) -> float:
+def relative_change(nominal: np.ndarray, law: np.ndarray, name: str) -> float:
     """max |p − p₀| / |p₀| over the parameters of an effect, p₀ their nominal values; infinite for p₀ = 0."""
     effect = servo_effect(name)
-    before, after = effect.read(case.law), effect.read(selected.law)
+    before, after = effect.read(nominal), effect.read(law)
     sizes = [
         abs(after[n] - before[n]) / abs(before[n]) if before[n] else np.inf for n in before if after[n] != before[n]
     ]

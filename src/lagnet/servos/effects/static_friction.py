@@ -27,4 +27,4 @@ class StaticFriction(ReversingEffect):
     source = "armstrong1994"
 
     def starts(self, scales: Scales) -> tuple[tuple[float, ...], ...]:
-        return ((0.1 * scales.torque,),)
+        return ((0.1 * scales.torque,), (0.4 * scales.torque,))

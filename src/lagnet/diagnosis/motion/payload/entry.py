@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import exp
 
-from lagnet.diagnosis.motion.payload import PayloadFound
+from lagnet.diagnosis.motion.block_scores import log10_odds
+from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.verdict.verdict import Abstained, EffectEvidence, EffectFound, NamedParameter
 from lagnet.servos.nominal import NominalServo
 
@@ -14,9 +15,8 @@ UNITS = {"m": "kg", "cx": "m", "cy": "m", "cz": "m"}
 def payload_effect(payload: PayloadFound) -> EffectFound:
     """One effect of the whole arm, with mass and centre in the last joint's frame."""
     parameters = tuple(NamedParameter(n, v, UNITS[n], payload.intervals[n]) for n, v in payload.values.items())
-    odds = max(-99.0, min(99.0, 0.5 * payload.lead_errors * abs(payload.lead_errors) / 2.302585))
     rival = payload.tied[0] if payload.tied else None
-    evidence = EffectEvidence(*payload.power, 1.0, rival, odds)
+    evidence = EffectEvidence(*payload.power, 1.0, rival, log10_odds(payload.lead_errors))
     shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}" for p in parameters)
     text = f"Payload on the last link, a point mass with {shown}: without it errors of position on motion that was not "
     text += f"fitted are {100.0 * (exp(payload.gain) - 1.0):.0f} % larger."

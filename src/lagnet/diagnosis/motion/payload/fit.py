@@ -8,12 +8,11 @@ Source: Atkeson 1986 (estimation of inertial parameters of loads).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import DAMPING, HUBER, PRIOR, huber, robust_scale
+from lagnet.diagnosis.motion.arm.fitting import Errors, fit_values, sensitivities_of
 from lagnet.diagnosis.motion.joint_case import JointCase
 from lagnet.diagnosis.motion.problem import SLOPES, MotionProblem, motion_rates
 from lagnet.rigid_body.inertia import parameters_of_body
@@ -22,11 +21,6 @@ from lagnet.rollout.one_joint import JointSeries
 
 FARTHEST = 1.0  # [m] |c| of a payload
 LEAST_MASS = 1e-4  # [kg]
-DIFFERENCE = 5e-3  # step of a finite difference, in sizes of (m, h)
-CONVERGED = 1e-3  # relative gain of the cost
-ROUNDS = 2  # fits, each with the robust scale of the one before
-
-Errors = Callable[[np.ndarray], list[np.ndarray]]  # (m, h) → predicted less measured positions of each joint [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,18 +92,6 @@ def joint_errors(cases: dict[int, JointCase], loads: BodyLoads) -> Errors:
     return errors
 
 
-def cost_of(errors: list[np.ndarray], scales: np.ndarray) -> float:
-    """Sum over joints of the mean Huber loss; infinite for a rollout that diverged."""
-    found = sum(float(np.mean(huber(e, s))) for e, s in zip(errors, scales, strict=True))
-    return found if np.isfinite(found) else np.inf
-
-
-def sensitivities_of(errors: Errors, point: np.ndarray, sizes: np.ndarray) -> list[np.ndarray]:
-    """∂q̂/∂(m, h) of each joint in units of the sizes, each of shape (n, 4)."""
-    here, moved = errors(point), [errors(point + DIFFERENCE * sizes * row) for row in np.eye(4)]
-    return [np.column_stack([(m[i] - e) / DIFFERENCE for m in moved]) for i, e in enumerate(here)]
-
-
 def fit_point_mass(
     errors: Errors, start: np.ndarray, sizes: np.ndarray, floors: np.ndarray, iterations: int = 20
 ) -> np.ndarray:
@@ -119,30 +101,7 @@ def fit_point_mass(
         errors: of the joints as a function of (m, h).
         start, sizes: shape (4,), of (m, h) [kg, kg m].
         floors: shape (joints,), resolution of the errors [rad].
-        iterations: at most, in each of `ROUNDS`.
+        iterations: at most, in each round.
     """
-    point = possible(start)
-    for _ in range(ROUNDS):
-        scales = np.array([robust_scale(e, f) for e, f in zip(errors(point), floors, strict=True)])
-        point = _fitted(errors, point, sizes, scales, iterations)
-    return point
-
-
-def _fitted(errors: Errors, point: np.ndarray, sizes: np.ndarray, scales: np.ndarray, iterations: int) -> np.ndarray:
-    first, cost = point / sizes, cost_of(errors(point), scales)
-    for _ in range(iterations):
-        normal, gradient = PRIOR * np.eye(4), PRIOR * (point / sizes - first)
-        for e, jacobian, s in zip(errors(point), sensitivities_of(errors, point, sizes), scales, strict=True):
-            weight = 1.0 / np.maximum(1.0, np.abs(e) / (HUBER * s)) / s**2 / len(e)
-            normal = normal + (jacobian * weight[:, None]).T @ jacobian
-            gradient = gradient + jacobian.T @ (weight * e)
-        steps = [-np.linalg.solve(normal + d * np.diag(np.diag(normal)), gradient) for d in DAMPING]
-        tried = [possible(point + step * sizes) for step in steps]
-        costs = [cost_of(errors(p), scales) for p in tried]
-        best = int(np.argmin(costs))
-        gain = cost - costs[best]
-        if gain > 0.0:
-            cost, point = costs[best], tried[best]
-        if not gain > CONVERGED * cost:
-            break
-    return point
+    found = sensitivities_of(errors, sizes)
+    return fit_values(errors, found, start, sizes, floors, nearest=possible, iterations=iterations)

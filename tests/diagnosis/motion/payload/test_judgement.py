@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.motion.diagnose import diagnose_motion
-from lagnet.diagnosis.motion.payload_entry import payload_abstention
-from lagnet.diagnosis.motion.payload_fit import body_loads, body_of, possible
+from lagnet.diagnosis.motion.payload.entry import payload_abstention
+from lagnet.diagnosis.motion.payload.fit import body_loads, body_of, possible
 from lagnet.diagnosis.motion.problem import motion_rates, pose_motion_problem
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.inertia import is_physically_consistent

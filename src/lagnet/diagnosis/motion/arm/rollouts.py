@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from lagnet.diagnosis.motion.block_scores import BLOCKS, LONGEST, SHORTEST
-from lagnet.diagnosis.motion.problem import MotionProblem, Run
+from lagnet.diagnosis.motion.problem import MotionProblem, Run, surest_edges
 from lagnet.rollout.whole_arm import roll_out_arm
 
 STEP = 0.004  # [s] of a rollout at most
-SAMPLES = 4000  # of the runs that a fit rolls out
+SAMPLES = 8000  # that a fit rolls out
+PIECE = 10.0  # [s] of a rollout where whole trajectories would be more than that
 
 
 @dataclass(frozen=True, eq=False)
 class ArmRuns:
-    """Trajectories that are rolled out whole, from their first sample.
+    """Trajectories that are rolled out from their first sample, or pieces of them from the measured state.
 
     Args:
         problem: commands, motion and nominal bodies.
@@ -37,6 +39,7 @@ class ArmRuns:
             body: shape (10,), inertial parameters added to the last link.
         """
         series, bodies = self.problem.series, self.problem.tree.bodies.copy()
+        begun = {run.first for run in self.problem.runs}
         if body is not None:
             bodies[-1] += body
         tree, out = replace(self.problem.tree, bodies=bodies), []
@@ -46,11 +49,12 @@ class ArmRuns:
                 np.column_stack([getattr(s, name)[rows] for s in series])
                 for name in ("command", "q", "ratio", "gain", "enabled")
             )
-            signals = {"ratio": ratio, "gain": gain, "enabled": enabled, "step": STEP}
+            v0 = np.zeros(q.shape[1]) if run.first in begun else self.problem.speed[run.first]
+            signals = {"v0": v0, "ratio": ratio, "gain": gain, "enabled": enabled, "step": STEP}
             out.append(roll_out_arm(tree, laws, series[0].time[rows], command, q[0], **signals) - q)
         return [np.concatenate([e[:, j] for e in out]) for j in self.joints]
 
-    def scores(self, errors: Sequence[np.ndarray], floors: Sequence[float]) -> np.ndarray:
+    def scores(self, errors: Sequence[np.ndarray], floors: np.ndarray) -> np.ndarray:
         """½ log(mean e² + floor²) of every joint in every block of time, as in `block_scores`; smaller is better."""
         time = self.problem.series[0].time
         spans = [float(time[run.last] - time[run.first]) for run in self.runs]
@@ -65,13 +69,21 @@ class ArmRuns:
 
 
 def runs_to_fit(problem: MotionProblem, fitted: int) -> tuple[Run, ...]:
-    """The first runs of the recordings that may be fitted, up to `SAMPLES`."""
-    out, total = [], 0
-    for run in problem.runs:
-        if run.recording < fitted and (not out or total < SAMPLES):
-            out.append(run)
-            total += run.last - run.first + 1
-    return tuple(out)
+    """All trajectories that may be fitted; where they have more than `SAMPLES`, pieces from all parts of them."""
+    runs = [run for run in problem.runs if run.recording < fitted]
+    if sum(run.last - run.first + 1 for run in runs) <= SAMPLES:
+        return tuple(runs)
+    pieces = [piece for run in runs for piece in _pieces(problem, run)]
+    longest = max(piece.last - piece.first + 1 for piece in pieces)
+    chosen = np.linspace(0, len(pieces) - 1, min(len(pieces), max(1, SAMPLES // longest))).round().astype(int)
+    return tuple(pieces[i] for i in np.unique(chosen))
+
+
+def _pieces(problem: MotionProblem, run: Run) -> list[Run]:
+    time = problem.series[0].time
+    count = max(1, round(float(time[run.last] - time[run.first]) / PIECE))
+    edges = surest_edges(problem.speed[run.first : run.last + 1], count) + run.first
+    return [Run(run.recording, int(a), int(b)) for a, b in pairwise(edges) if b > a]
 
 
 def runs_held_out(problem: MotionProblem, fitted: int) -> tuple[Run, ...]:

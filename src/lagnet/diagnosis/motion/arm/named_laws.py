@@ -1,0 +1,175 @@
+"""The laws of the named effects fitted to rollouts of the whole arm, and their intervals.
+
+Selection rolls out one joint while the others move as measured, whose accelerations are smoothed: that is fast, and
+biases values by a percent or two. Here all joints are coupled and every load is the model's own. A parameter moves its
+own joint first of all, so that in a fit one rollout gives the sensitivity of one parameter of every joint at once;
+intervals take each by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values, sensitivities_of
+from lagnet.diagnosis.motion.arm.intervals import half_widths
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
+from lagnet.diagnosis.motion.block_scores import advantage
+from lagnet.diagnosis.motion.fitting import Coordinates, free_coordinates
+from lagnet.diagnosis.motion.joint_case import sizes_of
+from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.diagnosis.motion.refitting import groups_of, without
+from lagnet.diagnosis.motion.selection import NEAR_NOMINAL, Rejected, relative_change
+
+ITERATIONS = 6  # in each round: a fit joint by joint is near
+
+
+@dataclass(frozen=True, eq=False)
+class ArmLaws:
+    """Free parameters of all joints as one vector, in the joints' order.
+
+    Args:
+        runs: the rollouts.
+        laws: shape (dof, len(LAW)), where they start.
+        free: free parameters of each joint that has any.
+    """
+
+    runs: ArmRuns
+    laws: np.ndarray
+    free: Mapping[int, Coordinates]
+
+    @property
+    def sizes(self) -> np.ndarray:
+        return np.concatenate([c.sizes for c in self.free.values()])
+
+    def read(self) -> np.ndarray:
+        """The values of the start, shape (k,)."""
+        return np.concatenate([c.read(self.laws[j]) for j, c in self.free.items()])
+
+    def write(self, values: np.ndarray) -> np.ndarray:
+        """The laws of given values, shape (dof, len(LAW)), within their bounds."""
+        out, first = self.laws.copy(), 0
+        for joint, coordinates in self.free.items():
+            last = first + len(coordinates.groups)
+            out[joint], first = coordinates.write(self.laws[joint], values[first:last])[0], last
+        return out
+
+    def nearest(self, values: np.ndarray) -> np.ndarray:
+        """The nearest values within bounds."""
+        low, high = (np.concatenate([getattr(c, b) for c in self.free.values()]) for b in ("lower", "upper"))
+        return np.clip(values, low, high)
+
+    def errors(self, values: np.ndarray) -> list[np.ndarray]:
+        return self.runs.errors(self.write(values))
+
+    def sensitivities(self, values: np.ndarray, here: list[np.ndarray]) -> list[np.ndarray]:
+        """∂q̂_j/∂x of each joint by its own parameters in units of their sizes, each of shape (n, k)."""
+        counts = [len(c.groups) for c in self.free.values()]
+        first = np.cumsum([0, *counts])
+        out = [np.zeros((len(e), int(first[-1]))) for e in here]
+        for i in range(max(counts)):
+            columns = [f + i for f, n in zip(first, counts, strict=False) if i < n]
+            step = np.zeros(int(first[-1]))
+            step[columns] = DIFFERENCE * self.sizes[columns]
+            step = np.where(self.nearest(values + step) < values + step, -step, step)
+            moved = self.errors(values + step)
+            for joint, column in ((j, f + i) for j, f, n in zip(self.free, first, counts, strict=False) if i < n):
+                at = self.runs.joints.index(joint)
+                out[at][:, column] = (moved[at] - here[at]) / (step[column] / self.sizes[column])
+        return out
+
+
+def fit_named_laws(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The diagnoses with values and intervals by the whole arm, less effects whose values are the nominal ones there.
+
+    Args:
+        problem: all recordings, the first `fitted` of them fitted.
+        fitted: number of them.
+        laws: nominal, shape (dof, len(LAW)), for joints that do not move.
+        found: diagnoses joint by joint.
+    """
+    out = _refitted(problem, fitted, laws, found)
+    while nominal := {j: near for j, d in out.items() if (near := _near_nominal(d))}:
+        out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
+        out = _refitted(problem, fitted, laws, out)
+    return _with_intervals(problem, fitted, laws, out)
+
+
+def _arm_of(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> ArmLaws | None:
+    """The named laws with what is free in them, None where nothing is."""
+    laws, free = laws.copy(), {}
+    for joint, diagnosis in found.items():
+        laws[joint] = diagnosis.named_law
+        if groups := groups_of(diagnosis.case, diagnosis.named.effects):
+            free[joint] = free_coordinates(groups, laws[joint], sizes_of(diagnosis.case.scales))
+    return ArmLaws(ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found)), laws, free) if free else None
+
+
+def _floors(found: Mapping[int, JointDiagnosis]) -> np.ndarray:
+    return np.array([d.case.floor for d in found.values()])
+
+
+def _refitted(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The named laws fitted to the whole arm, unless held-out motion is predicted worse by them."""
+    arm, floors = _arm_of(problem, fitted, laws, found), _floors(found)
+    if arm is None:
+        return dict(found)
+    slopes, start = arm.sensitivities, arm.read()
+    values = fit_values(arm.errors, slopes, start, arm.sizes, floors, nearest=arm.nearest, iterations=ITERATIONS)
+    held, new = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), arm.write(values)
+    before, after = (held.scores(held.errors(x), floors) for x in (arm.laws, new))
+    if advantage(before, after)[0] < 0.0:
+        return dict(found)
+    return {j: _with_law(d, new[j]) for j, d in found.items()}
+
+
+def _with_intervals(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The diagnoses with 95 % intervals of every free law parameter by name."""
+    arm = _arm_of(problem, fitted, laws, found)
+    if arm is None:
+        return dict(found)
+    values = arm.read()
+    here, coupled = arm.errors(values), sensitivities_of(arm.errors, arm.sizes, arm.nearest)
+    half, _ = half_widths(here, coupled(values, here), _floors(found), np.diag(arm.sizes))
+    rows = [(j, group) for j, c in arm.free.items() for group in c.groups]
+    ends: dict[int, dict[str, tuple[float, float]]] = {}
+    for (joint, group), value, width in zip(rows, values, half, strict=True):
+        ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
+    return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
+
+
+def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo whose values are the nominal ones but for a few percent."""
+    if found.case.base:
+        return ()
+    limit = found.case.limits.change
+    changes = {e: relative_change(found.case.law, found.named_law, e) for e in found.named.effects}
+    return tuple(Rejected(e, NEAR_NOMINAL, change, limit) for e, change in changes.items() if change < limit)
+
+
+def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiagnosis:
+    """The diagnosis without some of its named effects, the others fitted again; the complete law stays."""
+    named = found.named
+    for r in rejected:
+        named = without(found.case, named, r.effect, named.fitted.scale)
+    kept = tuple(c for c in found.comparisons if c.effect in named.effects)
+    law = named.law if np.array_equal(found.law, found.named_law) else found.law
+    return replace(found, named=named, comparisons=kept, rejected=(*found.rejected, *rejected), law=law)
+
+
+def _with_law(found: JointDiagnosis, law: np.ndarray) -> JointDiagnosis:
+    """A diagnosis with another named law; the complete law with it where it is the same."""
+    named = replace(found.named, fitted=replace(found.named.fitted, law=law))
+    complete = law if np.array_equal(found.law, found.named_law) else found.law
+    return replace(found, named=named, law=complete)
