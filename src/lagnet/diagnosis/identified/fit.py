@@ -77,14 +77,14 @@ def _fitted(
         if choice is None:
             return None
         negative = {t.joint for i, t in _columns_of(design, "rotor") if choice.ridge.x[i] < 0}
-        layer, final, choice = _positive_definite(problem, effects, design, choice, rest)
-        removed = {t.joint for i, t in _columns_of(design, "rotor") if design.scale[i] > 0 and final.scale[i] == 0}
-        if not removed - late:
-            return Identified(replace(layer, rest=friction_at_rest(problem, pieces, layer)), final, choice)
-        late |= removed | negative  # where one is no rotor, no negative one is
+        layer, design, choice, rotor = _positive_definite(problem, effects, design, choice, rest)
+        if rotor is None:
+            return Identified(replace(layer, rest=friction_at_rest(problem, pieces, layer)), design, choice)
+        late |= {rotor} | negative  # where one is no rotor, no negative one is
 
 
 def _columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
+    """Index of each unknown that weights a function of some kind, and the function."""
     return [(design.n_bodies + i, t) for i, t in enumerate(design.terms) if t.kind == kind]
 
 
@@ -107,8 +107,11 @@ def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLaye
 
 def _positive_definite(
     problem: Problem, effects: Sequence[NamedEffect], design: Design, choice: Choice, rest: Rest
-) -> tuple[IdentifiedLayer, Design, Choice]:
-    """The layer without rotors and couplings that would make the mass matrix indefinite at some pose of the motion."""
+) -> tuple[IdentifiedLayer, Design, Choice, int | None]:
+    """The layer without couplings that would make the mass matrix indefinite at some pose of the motion.
+
+    Where a rotor does, its joint comes back as well, and the layer is not settled.
+    """
     model = CorrectedModel(problem.nominal, tuple(effects), problem.slow, straight=problem.straight)
     q = np.concatenate([p.q[p.keep] for p in problem.fit])
     q = q[np.unique(np.linspace(0, len(q) - 1, POSES).round().astype(int))]
@@ -124,7 +127,10 @@ def _positive_definite(
         floor = min(float(np.linalg.eigvalsh(before)[:, 0].min()), 0.0) - INDEFINITE * float(problem.scale.max())
         negative = _most_negative(design, design.unscaled(x), direction)
         if least >= floor or negative is None:
-            return layer, design, choice
+            return layer, design, choice, None
+        term = design.terms[negative - design.n_bodies]
+        if term.kind == "rotor":
+            return layer, design, choice, term.joint
         design = design.without(np.array([negative]))
         choice = replace(
             choice, ridge=fit_ridge(design, joint_equations(design), choice.inefficiency, excluded=choice.excluded)
