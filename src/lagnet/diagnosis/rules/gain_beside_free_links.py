@@ -76,7 +76,10 @@ def _without(candidate: Candidate, gains: Sequence[NamedEffect]) -> list[FitSegm
     problem, out = candidate.problem, []
     model = CorrectedModel(problem.nominal, candidate.effects, problem.slow, straight=problem.straight)
     others = [e for e in candidate.effects if not any(e is gain for gain in gains)]
-    for piece in spread_evenly(problem.fit, MOST_SAMPLES) if (source := model.regressor_source) is not None else ():
+    source = model.regressor_source
+    if source is None:
+        return []
+    for piece in spread_evenly(problem.fit, MOST_SAMPLES):
         torque = torque_with(replace(piece.motion(problem), recorded=None), others)
         regressor = source.joint_torque_regressor(piece.q, piece.v, piece.a)
         out.append(FitSegment(piece, regressor, torque, piece.tau - torque))
