@@ -53,7 +53,7 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
         effects: named physics, kept fixed.
     """
     groups, rest = term_groups(problem), usual_rest(problem)
-    segments = [_fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
+    segments = [fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
     first = make_design(problem, segments, [g for g in groups if not g.needs_load and g.pair is None])
     ridge = fit_ridge(first, joint_equations(first), inefficiency=10.0, steps=15)
     segments = [_with_load(s, _layer(first, ridge.x, rest)) for s in segments]
@@ -155,7 +155,7 @@ def _modelled(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
     return inertial_parameters_of(problem.nominal) + named_body_change(problem.n_dof, effects)
 
 
-def _fit_segment(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]) -> FitSegment:
+def fit_segment(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]) -> FitSegment:
     """A segment with its regressor, under gravity as named, and the residual of the named model."""
     motion = replace(piece.motion(problem), recorded=None)  # a prediction does not use recorded torque
     model = CorrectedModel(problem.nominal, tuple(effects), problem.slow, straight=problem.straight)

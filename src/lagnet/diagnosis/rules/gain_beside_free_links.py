@@ -15,12 +15,12 @@ import numpy as np
 from lagnet.diagnosis.identified.design import FitSegment, make_design
 from lagnet.diagnosis.identified.dictionary import CORE, TermGroup
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.fit import fit_segment
 from lagnet.diagnosis.problem.problem import spread_evenly
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
-from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.motion_terms import MotionTerm
-from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect
 
 MOST_SAMPLES = 60_000  # at full rate: of longer recordings, pieces spread over them
 INEFFICIENCY = 10.0  # filtered samples with the information of one
@@ -73,14 +73,6 @@ def gains_beside_free_links(candidate: Candidate, gains: Sequence[NamedEffect]) 
 
 def _without(candidate: Candidate, gains: Sequence[NamedEffect]) -> list[FitSegment]:
     """Fitted motion with the torque of all effects but the gains as load; none for a model without bodies."""
-    problem, out = candidate.problem, []
-    model = CorrectedModel(problem.nominal, candidate.effects, problem.slow, straight=problem.straight)
-    others = [e for e in candidate.effects if not any(e is gain for gain in gains)]
-    source = model.regressor_source
-    if source is None:
-        return []
-    for piece in spread_evenly(problem.fit, MOST_SAMPLES):
-        torque = torque_with(replace(piece.motion(problem), recorded=None), others)
-        regressor = source.joint_torque_regressor(piece.q, piece.v, piece.a)
-        out.append(FitSegment(piece, regressor, torque, piece.tau - torque))
-    return out
+    problem, others = candidate.problem, [e for e in candidate.effects if not any(e is gain for gain in gains)]
+    segments = [fit_segment(problem, p, others) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
+    return [replace(s, load=s.piece.tau - s.target) for s in segments if s.regressor is not None]
