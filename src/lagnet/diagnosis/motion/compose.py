@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from lagnet._version import __version__
-from lagnet.diagnosis.motion.cases import encoder_step
-from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.localisation import locate_error, predictors
+from lagnet.diagnosis.motion.joint.cases import encoder_step
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.localisation import locate_error, predictors
+from lagnet.diagnosis.motion.joint.rivals import Comparison
 from lagnet.diagnosis.motion.payload.entry import payload_abstention, payload_effect
 from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.motion.problem import motion_rates
-from lagnet.diagnosis.motion.rivals import Comparison
 from lagnet.diagnosis.motion.verdict import MotionVerdict, PositionErrors
 from lagnet.diagnosis.motion.wording import as_ratio, explain_effect
 from lagnet.diagnosis.verdict.inputs import nominal_entry, recording_entries

@@ -9,10 +9,10 @@ from typing import Any, cast
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
-from lagnet.diagnosis.motion.cases import joint_case
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
-from lagnet.diagnosis.motion.joint_case import SelectionLimits
-from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis, diagnose_joint
+from lagnet.diagnosis.motion.joint.cases import joint_case
+from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis, diagnose_joint
 from lagnet.diagnosis.motion.payload.judgement import judge_payload
 from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
 from lagnet.diagnosis.motion.verdict import MotionVerdict

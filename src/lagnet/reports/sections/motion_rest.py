@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
-from lagnet.diagnosis.motion.rest import at_rest
+from lagnet.diagnosis.motion.joint.rest import at_rest
 from lagnet.reports.figures.decimation import scattered
 from lagnet.reports.figures.figure import Figure, axis, colour, packed
 from lagnet.reports.page import Section, section

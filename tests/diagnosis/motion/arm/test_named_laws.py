@@ -10,7 +10,7 @@ from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
 from lagnet.diagnosis.motion.arm.named_laws import ArmLaws
 from lagnet.diagnosis.motion.arm.rollouts import PIECE, SAMPLES, STEP, ArmRuns, runs_to_fit
-from lagnet.diagnosis.motion.fitting import Coordinates
+from lagnet.diagnosis.motion.joint.fitting import Coordinates
 from lagnet.diagnosis.motion.problem import MotionProblem, pose_motion_problem
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import kinematic_tree

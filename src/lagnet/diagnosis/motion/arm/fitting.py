@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import DAMPING, HUBER, PRIOR, huber, robust_scale
+from lagnet.diagnosis.motion.joint.fitting import DAMPING, HUBER, PRIOR, huber, robust_scale
 
 DIFFERENCE = 5e-3  # step of a finite difference, in sizes of the values
 CONVERGED = 1e-3  # relative gain of the cost

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import HUBER, robust_scale
-from lagnet.diagnosis.motion.intervals import NORMAL_95
+from lagnet.diagnosis.motion.joint.fitting import HUBER, robust_scale
+from lagnet.diagnosis.motion.joint.intervals import NORMAL_95
 
 BLOCKS = 40  # of time
 UNSEEN = 1e-6  # of the largest eigenvalue of the normal matrix: a direction that no joint shows

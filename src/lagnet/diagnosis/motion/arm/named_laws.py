@@ -16,13 +16,13 @@ import numpy as np
 from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
-from lagnet.diagnosis.motion.block_scores import advantage
-from lagnet.diagnosis.motion.fitting import Coordinates, free_coordinates
-from lagnet.diagnosis.motion.joint_case import sizes_of
-from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
+from lagnet.diagnosis.motion.joint.joint_case import sizes_of
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.refitting import groups_of, without
+from lagnet.diagnosis.motion.joint.selection import NEAR_NOMINAL, Rejected, relative_change
 from lagnet.diagnosis.motion.problem import MotionProblem
-from lagnet.diagnosis.motion.refitting import groups_of, without
-from lagnet.diagnosis.motion.selection import NEAR_NOMINAL, Rejected, relative_change
 
 ITERATIONS = 6  # in each round: a fit joint by joint is near
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from lagnet.diagnosis.motion.block_scores import BLOCKS, LONGEST, SHORTEST
+from lagnet.diagnosis.motion.joint.block_scores import BLOCKS, LONGEST, SHORTEST
 from lagnet.diagnosis.motion.problem import MotionProblem, Run, surest_edges
 from lagnet.rollout.whole_arm import roll_out_arm
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from lagnet.diagnosis.motion.arm.fitting import cost_of
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
-from lagnet.diagnosis.motion.block_scores import advantage
-from lagnet.diagnosis.motion.joint_case import SelectionLimits
-from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.payload.fit import (
     body_loads,
     body_of,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import exp
 
-from lagnet.diagnosis.motion.block_scores import log10_odds
+from lagnet.diagnosis.motion.joint.block_scores import log10_odds
 from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.verdict.verdict import Abstained, EffectEvidence, EffectFound, NamedParameter
 from lagnet.servos.nominal import NominalServo

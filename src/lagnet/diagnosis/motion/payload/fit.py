@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.fitting import Errors, fit_values, sensitivities_of
-from lagnet.diagnosis.motion.joint_case import JointCase
+from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.problem import SLOPES, MotionProblem, motion_rates
 from lagnet.rigid_body.inertia import parameters_of_body
 from lagnet.rollout.measured_load import measured_load

@@ -13,15 +13,15 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
-from lagnet.diagnosis.motion.joint_case import SelectionLimits
-from lagnet.diagnosis.motion.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.refitting import refit
+from lagnet.diagnosis.motion.joint.selection import Rejected
 from lagnet.diagnosis.motion.payload.comparison import PayloadComparison, compare_payload
 from lagnet.diagnosis.motion.payload.fit import body_of
 from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.motion.payload.interval import point_intervals
 from lagnet.diagnosis.motion.problem import MotionProblem
-from lagnet.diagnosis.motion.refitting import refit
-from lagnet.diagnosis.motion.selection import Rejected
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX
 

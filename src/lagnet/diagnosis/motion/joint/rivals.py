@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lagnet.diagnosis.motion.block_scores import advantage, log10_odds
-from lagnet.diagnosis.motion.fitting import robust_scale
-from lagnet.diagnosis.motion.joint_case import JointCase
-from lagnet.diagnosis.motion.refitting import Selection, refit, starts_with, without
+from lagnet.diagnosis.motion.joint.block_scores import advantage, log10_odds
+from lagnet.diagnosis.motion.joint.fitting import robust_scale
+from lagnet.diagnosis.motion.joint.joint_case import JointCase
+from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 EQUIVALENT = {"viscous_friction": ("gain_error",)}  # observationally equivalent: Fv v and kd v

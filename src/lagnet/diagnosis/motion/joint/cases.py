@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.equation_error import FirstLaw, first_law
-from lagnet.diagnosis.motion.fitting import JointData
-from lagnet.diagnosis.motion.joint_case import JointCase, SelectionLimits
+from lagnet.diagnosis.motion.joint.equation_error import FirstLaw, first_law
+from lagnet.diagnosis.motion.joint.fitting import JointData
+from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.catalogue import SERVO_CATALOGUE

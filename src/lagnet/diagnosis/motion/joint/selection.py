@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.motion.block_scores import advantage
-from lagnet.diagnosis.motion.fitting import robust_scale
-from lagnet.diagnosis.motion.joint_case import JointCase
-from lagnet.diagnosis.motion.refitting import Selection, refit, starts_with, without
+from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.fitting import robust_scale
+from lagnet.diagnosis.motion.joint.joint_case import JointCase
+from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 QUICK = 4  # iterations of the first fit of a candidate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lagnet.diagnosis.motion.block_scores import GREATEST_ODDS, log10_odds
+from lagnet.diagnosis.motion.joint.block_scores import GREATEST_ODDS, log10_odds
 
 
 def test_odds_are_those_of_a_normal_deviate():

@@ -6,7 +6,7 @@ from math import log
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import JointData
+from lagnet.diagnosis.motion.joint.fitting import JointData
 
 LONGEST = 2.0  # [s] of a block
 BLOCKS = 40  # that there should be at least

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import JointData, fit_law, free_coordinates
-from lagnet.diagnosis.motion.intervals import law_intervals
+from lagnet.diagnosis.motion.joint.fitting import JointData, fit_law, free_coordinates
+from lagnet.diagnosis.motion.joint.intervals import law_intervals
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.parameters import law_vector

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.block_scores import advantage
-from lagnet.diagnosis.motion.cases import LONG, windows_to_fit, with_long_windows
-from lagnet.diagnosis.motion.fitting import JointData, fit_law, free_coordinates, robust_scale
-from lagnet.diagnosis.motion.intervals import law_intervals
-from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
+from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.cases import LONG, windows_to_fit, with_long_windows
+from lagnet.diagnosis.motion.joint.fitting import JointData, fit_law, free_coordinates, robust_scale
+from lagnet.diagnosis.motion.joint.intervals import law_intervals
+from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
+from lagnet.diagnosis.motion.joint.refitting import Selection, groups_of, refit, starts_with
+from lagnet.diagnosis.motion.joint.rest import RestBand, rest_band
+from lagnet.diagnosis.motion.joint.rivals import Comparison, compare_rivals
+from lagnet.diagnosis.motion.joint.selection import Rejected, select, unless_unexplained
 from lagnet.diagnosis.motion.problem import MotionProblem
-from lagnet.diagnosis.motion.refitting import Selection, groups_of, refit, starts_with
-from lagnet.diagnosis.motion.rest import RestBand, rest_band
-from lagnet.diagnosis.motion.rivals import Comparison, compare_rivals
-from lagnet.diagnosis.motion.selection import Rejected, select, unless_unexplained
 from lagnet.servos.catalogue import servo_effect
 
 IDENTIFIED = (

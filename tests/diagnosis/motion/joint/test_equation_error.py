@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.diagnosis.motion.equation_error import first_law
+from lagnet.diagnosis.motion.joint.equation_error import first_law
 from lagnet.rollout.one_joint import JointSeries
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.parameters import INDEX

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import HUBER, Coordinates, JointData, sensitivities
+from lagnet.diagnosis.motion.joint.fitting import HUBER, Coordinates, JointData, sensitivities
 
 NORMAL_95 = 1.96
 

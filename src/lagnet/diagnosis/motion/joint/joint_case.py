@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from lagnet.diagnosis.motion.fitting import JointData
+from lagnet.diagnosis.motion.joint.fitting import JointData
 from lagnet.servos.effect import Scales
 from lagnet.servos.parameters import NAMES
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.block_scores import block_scores
-from lagnet.diagnosis.motion.fitting import Fitted, fit_law, free_coordinates
-from lagnet.diagnosis.motion.joint_case import JointCase, sizes_of
+from lagnet.diagnosis.motion.joint.block_scores import block_scores
+from lagnet.diagnosis.motion.joint.fitting import Fitted, fit_law, free_coordinates
+from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.parameters import KP, NAMES
 
