@@ -6,6 +6,7 @@ from collections import Counter
 
 import jax
 import numpy as np
+import pytest
 
 from lagnet.models.features import fit_features
 from lagnet.models.kinds import ModelSpec, draw, settings_class
@@ -56,12 +57,14 @@ def test_one_shape_a_call_for_model_and_reference():
     assert_one_shape_a_call(reference)
 
 
+@pytest.mark.slow
 def test_full_effort_on_seven_joints_is_bounded():
     model = Compiling(load_description("panda"))
     assert check(model).passed
     assert sum(sum(rows.values()) for rows in model.batches.values()) < MOST_BATCHES
 
 
+@pytest.mark.slow
 def test_learned_model_sees_one_shape_a_call_even_after_it_was_used():
     rng = np.random.default_rng(0)
     q, v, a = (rng.normal(size=(200, 2)) for _ in range(3))

@@ -27,6 +27,7 @@ def delan() -> LearnedModel:
     return LearnedModel(spec, draw(spec, jax.random.key(0)))
 
 
+@pytest.mark.slow
 def test_structured_network_is_mechanics_but_untrained_it_is_another_arm(delan: LearnedModel):
     report = check(delan, random_arm(2, 3, ("revolute",)), settings=LIGHT)
     for name in ("mass_matrix_positive_definite", "coriolis_skew_symmetric", "energy_along_rollout", "periodic_joints"):

@@ -37,7 +37,12 @@ IDENTITIES = {  # value, as a share: rounding of the best identities, error of d
 }
 
 
-@pytest.mark.parametrize("seed", range(50))
+QUICK_ARMS = 12  # of one to eight joints; all fifty with the slow tests
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(QUICK_ARMS), *(pytest.param(s, marks=pytest.mark.slow) for s in range(QUICK_ARMS, 50))]
+)
 def test_random_arms_raise_no_alarm(seed: int):
     arm = random_arm(1 + seed % 8, seed)
     report = check(arm, arm, seed=seed, settings=LIGHT)

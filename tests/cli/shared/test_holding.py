@@ -41,6 +41,7 @@ def test_the_joint_is_held_where_it_stood(command, case, capsys):
     assert main([command, str(folder / "arm.urdf"), *words[command], "--hold", f"{still}=0.4"]) == 0
 
 
+@pytest.mark.slow
 def test_a_diagnosis_finds_nothing_where_the_joint_is_held_right(case, capsys):
     folder, still = case
     words = ["diagnose", str(folder / "run.csv"), "--robot", str(folder / "arm.urdf"), "--out", str(folder / "out")]

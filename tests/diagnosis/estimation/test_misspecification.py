@@ -62,6 +62,7 @@ def test_a_late_signal_widens_what_goes_with_speed(plant, arm, at) -> None:
     assert error_with(0.01) > 3.0 * error_with(0.0) + 0.01
 
 
+@pytest.mark.slow
 def test_the_verdict_holds_the_wider_interval(plant, arm, at, monkeypatch) -> None:
     real = plant(at(JOINT, lambda q, v, a, t: 4.0 * np.sign(v) * np.abs(v) ** 0.9))
     recordings = [real.record(1)], arm, [real.record(2)]

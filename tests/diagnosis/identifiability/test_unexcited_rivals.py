@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 
@@ -26,6 +27,7 @@ def about_one_pose(real, seed: int):
     return Recording(time, q + 1e-5 * rng.standard_normal(q.shape), tau, real.robot.joints)
 
 
+@pytest.mark.slow
 def test_friction_under_a_constant_load_has_two_names(plant, arm, at) -> None:
     laws = (
         lambda q, v, a, t: 0.3 * np.abs(t) * np.tanh(v / SHARP),
@@ -48,6 +50,7 @@ def test_dry_friction_under_all_loads_has_one_name(plant, arm, at) -> None:
     assert [(e.effect, e.tied_with) for e in result.effects] == [("coulomb_friction", ())]
 
 
+@pytest.mark.slow
 def test_a_rotor_is_tied_with_its_link_only_while_the_other_joints_rest(plant, arm, at) -> None:
     real = plant(at(2, lambda q, v, a, t: 3.0 * a))
     alone = diagnose([real.record(53, hold=[0, 1])], arm, [real.record(54, hold=[0, 1])])

@@ -42,6 +42,7 @@ def learned(arm, plant):
     return lambda kind: Learned(arm, plant().usual_torque(), kind)
 
 
+@pytest.mark.slow
 def test_friction_is_named_beside_the_error_of_a_network(plant, at, arm, learned, names) -> None:
     real = plant(at(0, lambda q, v, a, body: 0.3 * np.abs(body).mean() * v))
     fitted, held = [real.record(seed, seconds=16.0) for seed in (1, 2)], [real.record(4, seconds=16.0)]

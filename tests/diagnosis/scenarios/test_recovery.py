@@ -135,6 +135,7 @@ def test_where_dry_friction_acts_is_told(plant, arm, at) -> None:
         assert 0.0 <= w["share_of_time"] <= 1.0
 
 
+@pytest.mark.slow
 def test_an_unknown_that_no_law_fits_is_called_unexplained(plant, arm, at) -> None:
     real = plant(at(1, lambda q, v, a, t: 6.0 * np.tanh(4.0 * q) * np.cos(9.0 * v)))
     result = diagnose([real.record(44, seconds=40.0)], arm, [real.record(45)])

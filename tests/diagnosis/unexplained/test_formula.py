@@ -53,6 +53,7 @@ def test_the_curve_follows_the_residual(posed) -> None:
     np.testing.assert_allclose(shape.curve[:, 1], 2.0 * shape.curve[:, 0], atol=0.1)
 
 
+@pytest.mark.slow
 def test_unlisted_physics_is_told_with_its_signals(plant, arm) -> None:
     def dragged(q, v, a, body):  # joint 1 feels the speed of joint 2, which no law of the catalogue does
         out = np.zeros_like(q)

@@ -53,6 +53,7 @@ def arm_of(problem: MotionProblem) -> ArmLaws:
     return ArmLaws(ArmRuns(problem, problem.runs, (0, 1)), np.array([NOMINAL, NOMINAL]), {0: free, 1: free})
 
 
+@pytest.mark.slow
 def test_values_come_back_from_rollouts_of_the_whole_arm(tmp_path):
     arm = arm_of(posed(tmp_path, 0.0))
     values = fit_values(arm.errors, arm.sensitivities, arm.read(), arm.sizes, np.full(2, 1e-5), nearest=arm.nearest)
@@ -69,6 +70,7 @@ def test_intervals_hold_the_values_behind_an_encoder(tmp_path):
     assert np.all(half < [0.4, 0.03, 0.25, 0.03])
 
 
+@pytest.mark.slow
 def test_slopes_at_once_are_those_one_by_one_where_one_joint_alone_is_free(tmp_path):
     both = arm_of(posed(tmp_path, 0.0, 8.0))
     arm = ArmLaws(both.runs, both.laws, {1: both.free[1]})

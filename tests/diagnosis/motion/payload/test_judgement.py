@@ -51,6 +51,7 @@ def nominal(tmp_path) -> Robot:
     return load_description(path)
 
 
+@pytest.mark.slow
 def test_a_payload_is_one_effect_of_the_arm_with_its_size(nominal, tmp_path):
     real = tmp_path / "real.xml"
     real.write_text(LEG.format(carried=CARRIED), encoding="utf-8")
