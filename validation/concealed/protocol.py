@@ -10,7 +10,7 @@ import hashlib
 import json
 import tempfile
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -22,6 +22,8 @@ from validation.plants.catalogue.draw_plan import draw_plan
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.simulate import simulate
 from validation.plants.catalogue.witness import Witness
+
+Disturbance = Callable[[Plan, Path, Witness], Witness]
 
 
 class OtherPlants(ValueError):
@@ -50,10 +52,17 @@ def publish_seals(plans: Sequence[Plan], out: Path) -> None:
 
 
 class Run:
-    """One run of the protocol in a folder."""
+    """One run of the protocol in a folder.
 
-    def __init__(self, out: Path, processes: int) -> None:
+    Args:
+        out: the folder.
+        processes: plants at a time.
+        disturbed: changes the recordings in a folder before they are diagnosed, and what they then show.
+    """
+
+    def __init__(self, out: Path, processes: int, disturbed: Disturbance | None = None) -> None:
         self.out, self.processes, self._lock = out, processes, threading.Lock()
+        self._disturbed = disturbed
 
     def conduct(self, plans: Sequence[Plan]) -> None:
         """Bring every plant that is not finished to its end."""
@@ -74,6 +83,8 @@ class Run:
             except Exception as error:
                 self._put(plan, "failures", f"not simulated: {error}".encode(), ".txt")
                 return plan.name, f"was not simulated: {error}"
+            if self._disturbed is not None:
+                witness = self._disturbed(plan, Path(folder), witness)
             self._publish("witnesses.sha256", witness.to_json(), f"{plan.name}.json")
             code = fingerprint()
             blind = diagnose_blind(Path(folder), plan.recordings, plan.robot)

@@ -1,0 +1,1 @@
+"""Concealed plants whose torque carries what real arms leave unexplained."""
