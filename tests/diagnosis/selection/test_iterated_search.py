@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -58,3 +60,15 @@ def test_a_payload_heavier_than_the_arm_leaves_the_tilt_of_its_base_visible(plan
     real = plant(robot=loaded.with_gravity(TILTED))
     result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
     assert names(result) == {("payload", None), ("gravity_tilt", None)}
+
+
+@pytest.mark.slow
+def test_an_encoder_offset_on_a_tilted_base_is_no_body(plant, arm, names) -> None:
+    """What the tilt made linear leaves, and the product of both, looked like a payload."""
+    real, delta = plant(robot=arm.with_gravity(9.81 * TILTED / np.linalg.norm(TILTED))), np.zeros(arm.n_dof)
+    delta[2] = 0.04
+    seen = [replace(r, q=r.q - delta) for r in (real.record(s) for s in (1, 2, 3))]
+    result = diagnose(seen[:2], arm, seen[2:])
+    assert names(result) == {("gravity_tilt", None), ("encoder_offset", arm.joints[2])}
+    found = {e.effect: e for e in result.effects}
+    assert found["encoder_offset"].value("delta") == pytest.approx(0.04, rel=0.02)

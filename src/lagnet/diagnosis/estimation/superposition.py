@@ -11,6 +11,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.models.corrected.shifted_weights import OFFSET, shifted_weight
 from lagnet.models.corrected.tilted_bodies import TILT, tilted_weight
 
 Change = dict[int, np.ndarray]
@@ -46,8 +47,8 @@ class Superposition:
                 self._parts[n] = _Part(seen, added)
                 load = _plus(load, added)
             if stage == "body":
-                self._tilted = tilted_weight(motion, self._effects)
-                load = load + self._tilted
+                self._products = _products(motion, self._effects)
+                load = load + self._products
         self.total = load
 
     def change(self, n: int, other: NamedEffect) -> Change:
@@ -55,8 +56,8 @@ class Superposition:
         stage = effect_named(other.effect).stage
         change = _minus(_by_joint(other.added(self._motion.with_load(self._parts[n].seen))), self._parts[n].added)
         if stage == "body":
-            tilted = self._tilted_change(n, other)
-            change = _minus(change, {} if np.ndim(tilted) == 0 else _by_joint(-np.asarray(tilted)))
+            products = self._products_change(n, other)
+            change = _minus(change, {} if np.ndim(products) == 0 else _by_joint(-np.asarray(products)))
             for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the bodies alone
                 change = _minus(change, {j: -x for j, x in after.items()})
         for m in self._of("signal"):
@@ -64,14 +65,12 @@ class Superposition:
                 change = _minus(change, {j: -x for j, x in self._answer(m, change).items()})
         return change
 
-    def _tilted_change(self, n: int, other: NamedEffect) -> np.ndarray | float:
-        """What changes of the weight of changed bodies in a changed field; it is linear in each body."""
+    def _products_change(self, n: int, other: NamedEffect) -> np.ndarray | float:
+        """What changes of products of tilt, bodies and encoder offsets; they are linear in each body."""
         if effect_named(other.effect).is_body:
-            tilts = [e for e in self._effects if e.effect == TILT]
-            return tilted_weight(self._motion, [other, *tilts]) - tilted_weight(
-                self._motion, [self._effects[n], *tilts]
-            )
-        return tilted_weight(self._motion, (*self._effects[:n], other, *self._effects[n + 1 :])) - self._tilted
+            others = [e for e in self._effects if e.effect in (TILT, OFFSET)]
+            return _products(self._motion, [other, *others]) - _products(self._motion, [self._effects[n], *others])
+        return _products(self._motion, (*self._effects[:n], other, *self._effects[n + 1 :])) - self._products
 
     def _of(self, stage: Stage) -> list[int]:
         return [n for n, e in enumerate(self._effects) if effect_named(e.effect).stage == stage]
@@ -82,6 +81,11 @@ class Superposition:
         if not effect_named(effect.effect).uses_load or effect.joint not in change:
             return {}
         return _minus(_by_joint(effect.added(self._motion.with_load(_plus(part.seen, change)))), part.added)
+
+
+def _products(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray | float:
+    """Torque that effects on bodies have only together, shape (n, dof) [N m]; 0 where there is none."""
+    return tilted_weight(motion, effects) + shifted_weight(motion, effects)
 
 
 def _by_joint(torque: np.ndarray) -> Change:

@@ -14,7 +14,8 @@ from lagnet.effects.effect import Effect
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect, load_before
-from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, weight_in_each
+from lagnet.models.corrected.shifted_weights import OFFSET, secant_columns
+from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, tilt_columns
 
 MOST_KEPT = 400e6  # bytes of columns that are kept for the next search
 
@@ -172,7 +173,7 @@ class Library:
     def _filtered(
         self, problem: Problem, piece: Segment, motion: Motion, indices: Sequence[int]
     ) -> Iterator[np.ndarray]:
-        columns = [self._columns(i, motion, problem.known) for i in indices]
+        columns = [self._columns(i, motion, problem) for i in indices]
         flat = problem.reduce(piece, np.hstack([x.reshape(len(x), -1) for x in columns]))
         at = 0
         for x in columns:
@@ -191,17 +192,16 @@ class Library:
         """What the columns of a hypothesis follow from, on a given piece."""
         h = self.hypotheses[index]
         sign = tuple(None if x is None else x.tobytes() for x in (problem.slow, problem.straight, problem.held))
-        known = problem.known if h.law.uses_load or h.effect in (*BODIES, GravityTilt.name) else ()
+        known = problem.known if h.law.uses_load or h.effect in (*BODIES, OFFSET, GravityTilt.name) else ()
         return h, sign, tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
 
-    def _columns(self, index: int, motion: Motion, known: tuple[NamedEffect, ...]) -> np.ndarray:
-        h = self.hypotheses[index]
+    def _columns(self, index: int, motion: Motion, problem: Problem) -> np.ndarray:
+        h, known = self.hypotheses[index], problem.known
         columns = h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
         if known and isinstance(h.law, GravityTilt):
-            changes = h.law.changes(np.asarray(motion.model.gravity, dtype=float), dict(h.shape))
-            if h.shape:
-                changes[:, 0] = 0.0  # bodies are seen in the field of a large tilt already
-            return columns + weight_in_each(motion, known, changes)
+            return tilt_columns(motion, h.law, dict(h.shape), known, columns)
+        if known and h.effect == OFFSET and h.joint is not None:
+            return secant_columns(motion, h.joint, known, columns)
         if known and h.effect in BODIES:
             link = motion.n_dof - 1 if h.joint is None else h.joint
             return columns + body_in_turned_field(motion, link, known)

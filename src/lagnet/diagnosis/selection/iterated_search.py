@@ -20,7 +20,9 @@ from lagnet.diagnosis.selection.arm_search import Selection, search_arm
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.inertia.gravity_tilt import is_bent
 from lagnet.models.corrected.named_effects import NamedEffect, load_before
+from lagnet.models.corrected.tilted_bodies import TILT
 
 ROUNDS = 3  # at most; each starts from the torque that the one before found
 CHANGED = 0.02  # of a joint's rms torque: a smaller change does not alter the columns
@@ -82,7 +84,12 @@ def _known(library: Library, found: Selection) -> tuple[NamedEffect, ...]:
 
 
 def _is_news(problem: Problem, known: tuple[NamedEffect, ...], left: np.ndarray) -> bool:
-    """Whether the torque of some joint with a residual above noise differs from that which the columns follow from."""
+    """Whether the torque of some joint with a residual above noise differs from that which the columns follow from.
+
+    With a tilt too large for the law made linear about the level base, any joint counts: bodies may hide what was left.
+    """
+    if any(e.effect == TILT and is_bent(e.values) for e in known):
+        left = np.ones_like(left)
     if not left.any() or not (known or problem.known):
         return False
     motion = problem.summary()

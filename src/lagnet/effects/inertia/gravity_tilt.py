@@ -12,6 +12,7 @@ from lagnet.effects.inertia.mounting import DOWN, FAR, far_direction
 from lagnet.effects.motion import Motion
 
 SMALL = 0.6  # rad: as far as the law made linear about the level base is used
+LINEAR = 0.03  # rad: beyond, the law made linear about the level base leaves 5e-4 of the weight
 UPSIDE_DOWN = 2.8  # rad
 TURN = 3.2  # rad: a base that hangs from a ceiling is turned by π
 SHARE = (0.5, 1.5)  # of a large tilt that is already near: its own coefficient would be 1
@@ -51,10 +52,10 @@ class GravityTilt(Effect):
         last = motion.n_dof - 1
         fields = np.stack([model.with_gravity(g).link_regressor(last, motion.q, still, still) for g in axes.T])
         inertia = model.with_gravity(np.zeros(3)).link_regressor(last, motion.q, motion.v, motion.a)
-        return far_direction(self._gravity_regressor(motion) @ axes, fields, inertia, motion)
+        return far_direction(self.gravity_regressor(motion) @ axes, fields, inertia, motion)
 
     def columns(self, motion: Motion, joint: int | None, shape: Mapping[str, float]) -> np.ndarray:
-        return self._gravity_regressor(motion) @ self.changes(np.asarray(motion.bodies.gravity, dtype=float), shape)
+        return self.gravity_regressor(motion) @ self.changes(np.asarray(motion.bodies.gravity, dtype=float), shape)
 
     def changes(self, gravity: np.ndarray, shape: Mapping[str, float]) -> np.ndarray:
         """Change of gravity in the frame of the base per unit of each coefficient, shape (3, k) [m/s²].
@@ -62,6 +63,12 @@ class GravityTilt(Effect):
         About a large tilt the first is that tilt itself.
         """
         return np.linalg.norm(gravity) * np.column_stack(level_frame(gravity)) @ _changes(shape)
+
+    def changes_near(self, gravity: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
+        """As `changes` about the level base, but exact at a tilt: J + (Δg(θ₀) − J θ₀) θ₀ᵀ / θ₀², shape (3, 2)."""
+        level, turn = self.changes(gravity, {}), np.array([values["theta_1"], values["theta_2"]])
+        left = self.gravity_of(gravity, values) - gravity - level @ turn
+        return level + np.outer(left, turn) / max(turn @ turn, 1e-30)
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         lower, upper = (np.full(2, SMALL * sign) for sign in (-1.0, 1.0))
@@ -78,7 +85,7 @@ class GravityTilt(Effect):
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
         gravity = np.asarray(motion.bodies.gravity, dtype=float)
-        return self._gravity_regressor(motion) @ (self.gravity_of(gravity, values) - gravity)
+        return self.gravity_regressor(motion) @ (self.gravity_of(gravity, values) - gravity)
 
     def remark(self, values: Mapping[str, float]) -> str:
         turned = float(np.hypot(values["theta_1"], values["theta_2"]))
@@ -88,13 +95,19 @@ class GravityTilt(Effect):
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         return needs_any_motion(motion)
 
-    def _gravity_regressor(self, motion: Motion) -> np.ndarray:
+    def gravity_regressor(self, motion: Motion) -> np.ndarray:
+        """Y_g(q), torque per unit of each component of gravity, shape (n, dof, 3)."""
         return motion.remembered("gravity", lambda: motion.bodies.gravity_regressor(motion.q))
 
 
 def is_large(turn: Mapping[str, float]) -> bool:
     """Whether a tilt is one that is looked for by its direction first."""
     return bool(np.hypot(turn["theta_1"], turn["theta_2"]) > FAR)
+
+
+def is_bent(turn: Mapping[str, float]) -> bool:
+    """Whether what the law made linear about the level base leaves of a tilt, θ²/2 of the weight, may be seen."""
+    return bool(np.hypot(turn["theta_1"], turn["theta_2"]) > LINEAR)
 
 
 def level_frame(gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -16,6 +16,7 @@ from lagnet.models.corrected.changed_bodies import CHANGES_OF_BODIES, apply_to_b
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 from lagnet.models.corrected.remainder import LearnedRemainder
+from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.types import (
     InverseDynamics,
     JointVector,
@@ -107,6 +108,8 @@ class CorrectedModel:
         if self._written is not None:
             ordered = [e for e in ordered if e.effect not in CHANGES_OF_BODIES]
         motion = self._motion(time, q, v, a, model.inverse_dynamics(q, v, a))
+        if self._written is not None:
+            motion = motion.with_load(motion.load + shifted_weight(motion, self.effects))
         return torque_with(motion, ordered) + self._beside(motion, ordered, in_order=False)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:

@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
+from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.models.corrected.tilted_bodies import tilted_weight
 from lagnet.types import Trajectory
 
@@ -93,7 +94,7 @@ def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
         for effect in (e for e in effects if effect_named(e.effect).stage == stage):
             tau = tau + effect.added(motion.with_load(tau) if stage == "signal" else before)
         if stage == "body":
-            tau = tau + tilted_weight(motion, effects)
+            tau = tau + tilted_weight(motion, effects) + shifted_weight(motion, effects)
     return tau
 
 

@@ -39,9 +39,8 @@ def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | floa
     tilts = [e for e in effects if e.effect == TILT]
     if not bodies or not tilts:
         return 0.0
-    gravity = np.asarray(motion.bodies.gravity, dtype=float)
-    change = sum((TILT_LAW.gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
-    return sum((_weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
+    change = change_of_gravity(motion, tilts)
+    return sum((weight(motion, e, change) for e in bodies), np.zeros_like(motion.load))
 
 
 def body_in_turned_field(motion: Motion, link: int, effects: Sequence[Named]) -> np.ndarray | float:
@@ -52,9 +51,31 @@ def body_in_turned_field(motion: Motion, link: int, effects: Sequence[Named]) ->
     large = [e for e in effects if e.effect == TILT and is_large(e.values)]
     if not large:
         return 0.0
+    return np.einsum("gnji,g->nji", fields_of(motion, link), change_of_gravity(motion, large))
+
+
+def tilt_columns(
+    motion: Motion, law: GravityTilt, shape: Mapping[str, float], known: Sequence[Named], columns: np.ndarray
+) -> np.ndarray:
+    """Torque per unit of each coefficient of a tilt beside what was found, shape (n, dof, k) [N m].
+
+    Args:
+        motion: whose.
+        law: of the tilt.
+        shape: the large tilt that it is expanded about, or none.
+        known: bodies, whose weight a tilt changes, too, and a tilt, at which the columns are exact.
+        columns: without them.
+    """
     gravity = np.asarray(motion.bodies.gravity, dtype=float)
-    change = sum((TILT_LAW.gravity_of(gravity, e.values) - gravity for e in large), np.zeros(3))
-    return np.einsum("gnji,g->nji", _fields_of(motion, link), change)
+    changes = law.changes(gravity, shape)
+    if shape:
+        changes[:, 0] = 0.0  # bodies are seen in the field of a large tilt already
+        return columns + weight_in_each(motion, known, changes)
+    for tilt in (e for e in known if e.effect == TILT and not is_large(e.values)):
+        near = law.changes_near(gravity, tilt.values)
+        columns = columns + law.gravity_regressor(motion) @ (near - changes)
+        changes = near
+    return columns + weight_in_each(motion, known, changes)
 
 
 def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray) -> np.ndarray | float:
@@ -67,22 +88,29 @@ def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray
     if not bodies:
         return 0.0
     return np.stack(
-        [sum((_weight(motion, e, g) for e in bodies), np.zeros_like(motion.load)) for g in changes.T], axis=2
+        [sum((weight(motion, e, g) for e in bodies), np.zeros_like(motion.load)) for g in changes.T], axis=2
     )
 
 
-def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
+def change_of_gravity(motion: Motion, tilts: Sequence[Named]) -> np.ndarray:
+    """Gravity in the frame of a tilted base less that of the model, shape (3,) [m/s²]."""
+    gravity = np.asarray(motion.bodies.gravity, dtype=float)
+    return sum((TILT_LAW.gravity_of(gravity, e.values) - gravity for e in tilts), np.zeros(3))
+
+
+def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
+    """Holding torque of a payload or link change in a field of gravity, shape (n, dof) [N m]."""
     link = motion.n_dof - 1 if body.joint is None else body.joint
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
-    field = np.tensordot(gravity, _fields_of(motion, link), 1)
+    field = np.tensordot(gravity, fields_of(motion, link), 1)
     return (field.reshape(-1, weights.size) @ weights).reshape(field.shape[:-1])
 
 
-def _fields_of(motion: Motion, link: int) -> np.ndarray:
+def fields_of(motion: Motion, link: int) -> np.ndarray:
+    """Holding torque per unit of each parameter of a body and of gravity along each axis, shape (3, n, dof, 10)."""
     return motion.remembered(f"weights_{link}", lambda: _fields(motion, link))
 
 
 def _fields(motion: Motion, link: int) -> np.ndarray:
-    """Holding torque per unit of each parameter of a body and of gravity along each axis, shape (3, n, dof, 10)."""
     rest = np.zeros_like(motion.q)
     return np.stack([motion.bodies.with_gravity(g).link_regressor(link, motion.q, rest, rest) for g in np.eye(3)])

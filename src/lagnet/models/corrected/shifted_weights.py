@@ -1,0 +1,62 @@
+"""δ_j ∂G/∂q_j: what encoder offsets have only together with a tilted base or changed bodies, G their holding torque."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.effects.motion import Motion
+from lagnet.effects.signal.encoder_offset import EncoderOffset
+from lagnet.models.corrected.tilted_bodies import BODIES, TILT, Named, change_of_gravity, weight
+
+OFFSET = EncoderOffset.name
+OFFSET_LAW = EncoderOffset()
+STEP = 1e-3  # [rad] of the difference quotient
+
+
+def shifted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
+    """Holding torque of tilt, payloads and link changes that encoder offsets add, shape (n, dof) [N m]; 0 without both.
+
+    Either effect alone is computed with the bodies, the gravity and the angles of the nominal model, which leaves this
+    product out. It is linear in the offset: what is left is of third order.
+    """
+    offsets = [e for e in effects if e.effect == OFFSET and e.joint is not None]
+    return sum((e.values["delta"] * weight_slope(motion, int(e.joint or 0), effects) for e in offsets), 0.0)
+
+
+def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
+    """∂G/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
+    tilts = [e for e in effects if e.effect == TILT]
+    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
+    if not tilts and not bodies:
+        return 0.0
+    change = change_of_gravity(motion, tilts)
+    field = np.asarray(motion.bodies.gravity, dtype=float) + change
+    ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
+    held = [p.bodies.gravity_regressor(p.q) @ change for p in (ahead, behind)]
+    held = [sum((weight(p, b, field) for b in bodies), h) for p, h in zip((ahead, behind), held, strict=True)]
+    return (held[0] - held[1]) / (2.0 * STEP)
+
+
+def secant_columns(motion: Motion, joint: int, known: Sequence[Named], columns: np.ndarray) -> np.ndarray:
+    """Torque per unit of an encoder offset beside what was found, shape (n, dof, 1) [N m/rad].
+
+    Args:
+        motion: whose.
+        joint: of the offset.
+        known: tilts and bodies, whose weight it shifts, too, and an offset of the joint, at which the column is exact.
+        columns: without them.
+    """
+    deltas = [e.values["delta"] for e in known if e.effect == OFFSET and e.joint == joint]
+    for delta in (d for d in deltas if d != 0.0):
+        columns = OFFSET_LAW.torque(motion, joint, {"delta": delta})[..., None] / delta
+    return columns + np.asarray(weight_slope(motion, joint, known))[..., None]
+
+
+def _shifted(motion: Motion, joint: int, steps: int) -> Motion:
+    """The motion with one joint elsewhere, and a store of its own."""
+    q = motion.q.copy()
+    q[:, joint] += steps * STEP
+    return replace(motion, q=q, cache={})
