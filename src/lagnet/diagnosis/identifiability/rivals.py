@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.regression.cross_validation import NormalEquations
+from lagnet.diagnosis.identifiability.block_odds import LN10, held_out_errors, log10_odds
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, unseen_block_errors
 from lagnet.diagnosis.selection.arm_search import Selection, total_score, views_of
 from lagnet.diagnosis.selection.joint_search import JointView, compatible, gains_over
 
@@ -45,21 +46,31 @@ def compare_with_rivals(equations: NormalEquations, found: Selection) -> tuple[C
 
 def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comparison:
     here, error = view.score(own), view.error(own)
-    odds: dict[str, float] = {}
+    closest: dict[str, tuple[float, tuple[int, ...]]] = {}
     tied: set[str] = set()
     for names, other in replacements(view, own, index):
         score = view.score(other)
         if not np.isfinite(score):
             continue
-        gap = float((here - score) / np.log(10.0))
+        gap = here - score
         same = view.error(other) - error < max(view.limits.same_error * error, view.least_gain)
         for name in names:
-            if gap < odds.get(name, np.inf):
-                odds[name] = gap
-            if gap < view.limits.tie_odds or same:
+            if name not in closest or gap < closest[name][0]:
+                closest[name] = gap, other
+            if same:
                 tied.add(name)
+    odds = {name: _local_odds(view, own, other) for name, (_, other) in closest.items()}
+    tied.update(name for name, told in odds.items() if told < view.limits.tie_odds)
     tied.update(_preferred_yet_refused(view, own, index))
     return Comparison(index, _ranked(odds), tuple(sorted(tied)))
+
+
+def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -> float:
+    """log10 odds of a joint's selection over another: of their errors in blocks, and of their complexity."""
+    system = view.system
+    errors = [held_out_errors(system.blocks, system.folds, system.columns(s))[None] for s in (own, other)]
+    simpler = sum(view.equations.penalties[list(other)]) - sum(view.equations.penalties[list(own)])
+    return log10_odds([view.pieces], *errors, [view.least_error]) + float(simpler) / LN10
 
 
 def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
@@ -112,17 +123,29 @@ def replacements(
 def _arm_wide_comparison(equations: NormalEquations, found: Selection, index: int) -> Comparison:
     hypotheses = equations.library.hypotheses
     others = tuple(i for i in found.arm_wide if i != index)
-    odds: dict[str, float] = {}
+    best: dict[str, tuple[float, int]] = {}
     for k in equations.library.reaching:
         if k in found.arm_wide or hypotheses[k].place == hypotheses[index].place:
             continue
         score = total_score(equations, (*others, k), found)
         if np.isfinite(score):
             name = hypotheses[k].effect
-            odds[name] = min(odds.get(name, np.inf), float((found.score - score) / np.log(10.0)))
+            best[name] = max(best.get(name, (-np.inf, k)), (score, k))
+    odds = {name: _arm_wide_odds(equations, found, (*others, k)) for name, (_, k) in best.items()}
     same = hypotheses[index].effect
     tied = tuple(sorted(n for n, o in odds.items() if o < equations.limits.tie_odds and n != same))
     return Comparison(index, _ranked({n: o for n, o in odds.items() if n != same}), tied)
+
+
+def _arm_wide_odds(equations: NormalEquations, found: Selection, others: tuple[int, ...]) -> float:
+    """log10 odds of the selection over one with other arm-wide hypotheses beside the same local ones."""
+    chosen = (*others, *(i for own in found.local for i in own))
+    sigma = found.sigma(equations)
+    errors = [unseen_block_errors(equations, s, sigma) for s in (found.indices, chosen)]
+    penalties = [float(equations.penalties[list(s)].sum()) for s in (found.indices, chosen)]
+    pieces = equations.samples / found.scales.inefficiency
+    floors = np.maximum(1e-3 * found.scales.noise_power, 1e-12 * found.scales.torque_power)
+    return log10_odds(pieces, *errors, floors) + (penalties[1] - penalties[0]) / LN10
 
 
 def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:

@@ -148,14 +148,38 @@ def _unseen_error(equations: NormalEquations, order: Sequence[int], where: dict,
     error = np.array([f[:, -1, -1].sum() for f in equations.folds])
     if not order:
         return error
-    gram, moment = assemble(equations, order, where, sigma, equations.without_folds)
-    theta = ridge_solve(gram, moment, RIDGE)
+    theta = _theta_without_folds(equations, order, where, sigma)
     for joint, fold in enumerate(equations.folds):
         own = [i for i in order if i in equations.library.slots[joint]]
         if own:
             here, there = equations.columns(joint, own), np.concatenate([where[i] for i in own])
             error[joint] = squared_errors(fold, here, theta, there)
     return error
+
+
+def _theta_without_folds(
+    equations: NormalEquations, order: Sequence[int], where: dict, sigma: np.ndarray
+) -> np.ndarray:
+    """Coefficients of the fit to all folds but one, shape (n_folds, K)."""
+    gram, moment = assemble(equations, order, where, sigma, equations.without_folds)
+    return ridge_solve(gram, moment, RIDGE)
+
+
+def unseen_block_errors(equations: NormalEquations, selection: Sequence[int], sigma: np.ndarray) -> np.ndarray:
+    """Squared error of each joint in each block, of the fit to all folds but the block's, shape (dof, B) [N² m²]."""
+    order = tuple(selection)
+    widths = [equations.library.widths[i] for i in order]
+    starts = np.concatenate([[0], np.cumsum(widths)]).astype(int)
+    where = {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(order)}
+    theta = _theta_without_folds(equations, order, where, sigma) if order else np.zeros((1, 0))
+    out = []
+    for joint, blocks in enumerate(equations.grams.joints):
+        own = [i for i in order if i in equations.library.slots[joint]]
+        columns = np.append(equations.columns(joint, own), blocks.shape[-1] - 1)
+        rows = np.concatenate([np.zeros(0, dtype=int), *(where[i] for i in own)])
+        weights = np.column_stack([-theta[:, rows], np.ones(len(theta))])[np.arange(len(blocks)) % len(theta)]
+        out.append(np.einsum("bi,bij,bj->b", weights, blocks[:, columns[:, None], columns], weights))
+    return np.maximum(np.array(out), 0.0)
 
 
 def statistical_inefficiency(equations: NormalEquations, joint: int, columns: np.ndarray, theta: np.ndarray) -> float:

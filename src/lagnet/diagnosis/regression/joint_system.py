@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -31,6 +31,7 @@ class JointSystem:
         joint: index.
         total: shape (K + 1, K + 1), sum of all blocks; the K columns are those of the joint's own hypotheses.
         folds: shape (n_folds, K + 1, K + 1).
+        each: gives the blocks, shape (B, K + 1, K + 1), block b of fold b mod n_folds.
         known: what was judged, by selections in increasing order.
         found: selections that a search found, by where it began.
         more: squared errors with each hypothesis more, by selections in increasing order.
@@ -40,6 +41,7 @@ class JointSystem:
     joint: int
     total: np.ndarray
     folds: np.ndarray
+    each: Callable[[], np.ndarray]
     known: dict[tuple[int, ...], Judged] = field(default_factory=dict)
     found: dict[Hashable, tuple[int, ...]] = field(default_factory=dict)
     more: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
@@ -51,7 +53,7 @@ class JointSystem:
 
     def solved(self, selection: Sequence[int]) -> tuple[float, np.ndarray]:
         """E(S) on blocks left out of the fit [N² m²], and θ of all blocks."""
-        return self._bordered.alone(self._columns(selection))
+        return self._bordered.alone(self.columns(selection))
 
     def judged(self, selection: Sequence[int]) -> Judged:
         """E(S), and whether its coefficients are feasible."""
@@ -59,7 +61,7 @@ class JointSystem:
         if key not in self.known:
             error, theta = self.solved(key)
             lower, upper = self.library.bounds_at(self.joint)
-            columns = self._columns(key)
+            columns = self.columns(key)
             inside = rows_inside(theta[None], columns, columns[None, :0], lower, upper)
             self.known[key] = Judged(error, bool(inside[0]))
         return self.known[key]
@@ -77,7 +79,7 @@ class JointSystem:
     def _with_each(self, selection: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
         local = self.library.local[self.joint]
         errors, feasible = np.full(len(local), np.inf), np.zeros(len(local), dtype=bool)
-        base = self._columns(selection)
+        base = self.columns(selection)
         lower, upper = self.library.bounds_at(self.joint)
         for places, columns in self.library.by_width[self.joint]:
             found = self._bordered.with_additions(base, columns)
@@ -87,10 +89,16 @@ class JointSystem:
         return errors, feasible
 
     @cached_property
+    def blocks(self) -> np.ndarray:
+        """G_b of each block, shape (B, K + 1, K + 1)."""
+        return self.each()
+
+    @cached_property
     def _bordered(self) -> BorderedSystems:
         return BorderedSystems(self.total, self.folds)
 
-    def _columns(self, selection: Sequence[int]) -> np.ndarray:
+    def columns(self, selection: Sequence[int]) -> np.ndarray:
+        """Column numbers of a selection, shape (k,)."""
         slots = self.library.slots[self.joint]
         picked = [np.arange(slots[i].start, slots[i].stop) for i in selection]
         return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
@@ -109,8 +117,11 @@ def joint_system(equations: NormalEquations, joint: int, taken: dict[int, np.nda
     columns = equations.columns(joint, felt)
     theta = np.concatenate([np.zeros(0), *felt.values()])
 
+    def each() -> np.ndarray:
+        return take_off(equations.grams.joints[joint], columns, theta, own)
+
     def made() -> JointSystem:
         total, folds = (take_off(x, columns, theta, own) for x in (equations.total[joint], equations.folds[joint]))
-        return JointSystem(equations.library, joint, total, folds)
+        return JointSystem(equations.library, joint, total, folds, each)
 
     return made() if felt else equations.remembered(joint, made)

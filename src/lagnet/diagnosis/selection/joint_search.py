@@ -52,17 +52,25 @@ class JointView:
         judged = self.system.judged(selection)
         if not judged.feasible:
             return -np.inf
-        floor = max(judged.error, 1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
-        evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
+        evidence = -0.5 * self.pieces * np.log(max(judged.error, self.least_error))
         return evidence - sum(self.limits.penalty(*self.equations.library.freedom[i]) for i in selection)
+
+    @property
+    def pieces(self) -> float:
+        """n / g, independent pieces of evidence."""
+        return float(self.equations.samples[self.joint]) / self.inefficiency
+
+    @property
+    def least_error(self) -> float:
+        """Squared error below which two selections are alike [N² m²]."""
+        return max(1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
 
     def scores_with_each(self, selection: Sequence[int]) -> np.ndarray:
         """log P(S ∪ {k}) for every hypothesis k of the joint, shape (m,); −∞ where k may not stand beside S."""
         errors, feasible = self.system.with_each(selection)
         library = self.equations.library
         local = library.local[self.joint]
-        floor = np.maximum(errors, max(1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300))
-        evidence = -0.5 * self.equations.samples[self.joint] / self.inefficiency * np.log(floor)
+        evidence = -0.5 * self.pieces * np.log(np.maximum(errors, self.least_error))
         barred = library.barred[self.joint][:, [local.index(i) for i in selection]].any(axis=1)
         penalties = self.equations.penalties[list(local)] + self.equations.penalties[list(selection)].sum()
         return np.where(feasible & ~barred, evidence - penalties, -np.inf)

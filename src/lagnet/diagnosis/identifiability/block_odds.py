@@ -1,0 +1,62 @@
+"""Odds that one selection predicts blocks of motion better than another, from the scatter between blocks.
+
+With D = Σ_j n_j / (2 g_j) ln(E'_j / E_j) the difference of log evidence and u_b the influence of block b on it,
+
+> z = D / √(B / (B − 1) Σ_b u_b²),  u_b = Σ_j n_j / (2 g_j) (E'_jb / E'_j − E_jb / E_j)
+
+is the test of Vuong (Econometrica 57, 1989) for two inexact models. The odds are those of a Student variable of
+B − 1 degrees of freedom to lie below z, and at most exp D: where something structured is always left, a sum over
+many samples is surer than the recordings are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import t as student
+
+from lagnet.diagnosis.regression.cross_validation import RIDGE
+from lagnet.diagnosis.regression.normal_equations import ridge_solve
+
+GREATEST = 99.0  # powers of ten that are told
+LN10 = float(np.log(10.0))
+
+
+def held_out_errors(blocks: np.ndarray, folds: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Squared error in each block of the fit to all folds but its own, shape (B,) [N² m²].
+
+    Args:
+        blocks: shape (B, K + 1, K + 1), Gram matrices with the residual last; block b is of fold b mod n_folds.
+        folds: shape (n_folds, K + 1, K + 1), their sums by fold.
+        columns: shape (k,), of the selection.
+    """
+    own = np.append(columns, blocks.shape[-1] - 1)
+    inside, groups = blocks[:, own[:, None], own], folds[:, own[:, None], own]
+    theta = np.ones((len(folds), own.size))
+    if columns.size:
+        rest = groups.sum(axis=0) - groups
+        theta[:, :-1] = -ridge_solve(rest[:, :-1, :-1], rest[:, :-1, -1], RIDGE)
+    each = theta[np.arange(len(blocks)) % len(folds)]
+    return np.maximum(np.einsum("bi,bij,bj->b", each, inside, each), 0.0)
+
+
+def log10_odds(pieces: Sequence[float], here: np.ndarray, there: np.ndarray, floors: Sequence[float]) -> float:
+    """log10 odds of the selection with errors `here` over the one with errors `there`.
+
+    Args:
+        pieces: n_j / g_j, independent pieces of evidence of each joint.
+        here, there: shape (J, B), squared errors by joint and block [N² m²].
+        floors: least squared error of each joint that counts [N² m²].
+    """
+    weight = 0.5 * np.asarray(pieces)
+    sums = [np.maximum(e.sum(axis=1), np.maximum(floors, 1e-300)) for e in (here, there)]
+    gain = float(np.sum(weight * np.log(sums[1] / sums[0])))
+    influence = weight @ (there / sums[1][:, None] - here / sums[0][:, None])
+    felt = int(np.sum(np.any(here + there > 0.0, axis=0)))
+    if felt < 2 or gain == 0.0:
+        return 0.0
+    spread = float(np.sqrt(felt / (felt - 1) * np.sum(influence**2)))
+    z = abs(gain) / max(spread, 1e-12 * abs(gain))
+    told = (student.logcdf(z, felt - 1) - student.logsf(z, felt - 1)) / LN10
+    return float(np.copysign(min(abs(gain) / LN10, told, GREATEST), gain))
