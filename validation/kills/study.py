@@ -45,13 +45,13 @@ class Moments:
     def __init__(self, timing: Timing, sizes: Sequence[int], seed: tuple[int, ...]):
         self.timing, self.sizes, self.rng = timing, sizes, np.random.default_rng(seed)
 
-    def draw(self, index: int) -> Callable[[], Interruption]:
-        """The kind that is this index's turn; a new moment with each call."""
+    def draw(self, index: int) -> Callable[[float], Interruption]:
+        """The kind that is this index's turn; with each call a new moment, within a share of the time."""
         kind, late = KINDS[index % len(KINDS)], bool(index // len(KINDS) % 2)
         if kind == "full disk":
-            return lambda: Interruption(kind, largest=int(self.rng.integers(1, int(self.rng.choice(self.sizes)))))
+            return lambda _: Interruption(kind, largest=int(self.rng.integers(1, int(self.rng.choice(self.sizes)))))
         room = self.timing.writing if late else self.timing.whole
-        return lambda: Interruption(kind, float(self.rng.uniform(0.0, LATEST * room)), late)
+        return lambda share: Interruption(kind, float(self.rng.uniform(0.0, LATEST * room * share)), late)
 
 
 def main() -> None:
@@ -102,9 +102,9 @@ def _jobs(folder: Path, name: str, count: int, into_finished: bool) -> list[tupl
 def _one(job: tuple) -> Row:
     reference, draw, lock, folder = job
 
-    def drawn() -> Interruption:
+    def drawn(share: float) -> Interruption:
         with lock:
-            return draw()
+            return draw(share)
 
     row = tried(reference, drawn, folder, _contracts())
     print(f"{_words(row)}{'' if row.faultless else f'   FAULT {asdict(row)}'}", flush=True)

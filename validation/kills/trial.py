@@ -11,6 +11,7 @@ from validation.kills.commands import Command, finish
 from validation.kills.interrupt import Ended, Interruption, interrupted
 from validation.kills.standing import CHECKPOINT, broken_promises, digests, drafts, finished, half_written
 
+SOONER = 0.8  # of the time before, where a signal came after the end
 REASON = "File too large"  # what the system says of a file that is larger than it may be
 
 
@@ -70,18 +71,19 @@ class Row:
         return self.clean and not damaged and self.same_weights is not False
 
 
-def tried(reference: Reference, draw: Callable[[], Interruption], folder: Path, contracts: Path | None) -> Row:
-    """Interrupts, drawing again where the command had ended before, and looks at what stands there."""
-    out = folder / "out"
+def tried(reference: Reference, draw: Callable[[float], Interruption], folder: Path, contracts: Path | None) -> Row:
+    """Interrupts, drawing again and sooner where the command had ended before, and looks at what stands there."""
+    out, sooner = folder / "out", 1.0
     while True:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         if reference.old:
             shutil.copytree(reference.old, out)
-        by = draw()
+        by = draw(sooner)
         ended = interrupted(reference.command, out, by)
         if ended.felt:
             return _looked_at(reference, by, ended, out, contracts)
+        sooner *= SOONER
 
 
 def _looked_at(reference: Reference, by: Interruption, ended: Ended, out: Path, contracts: Path | None) -> Row:
