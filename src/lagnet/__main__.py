@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 INTERRUPTED = 3
@@ -16,7 +17,10 @@ def run() -> int:
     try:
         from lagnet.cli.main import main
 
-        return main()
+        code = main()
+        # All is written and said; while the interpreter ends, Ctrl-C would kill it and hide the exit code.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        return code
     except KeyboardInterrupt:
         print("lagnet: interrupted", file=sys.stderr)
         return INTERRUPTED

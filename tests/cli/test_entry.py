@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 import pytest
@@ -28,5 +29,10 @@ def test_control_c_while_modules_are_loaded(
 
 def test_it_runs_the_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", ["lagnet", "--version"])
-    assert entry.run() == 0
+    handler = signal.getsignal(signal.SIGINT)
+    try:
+        assert entry.run() == 0
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN  # while the interpreter ends
+    finally:
+        signal.signal(signal.SIGINT, handler)
     assert capsys.readouterr().out.startswith("lagnet ")
