@@ -13,7 +13,7 @@ from pathlib import Path
 from lagnet.files import write_whole
 
 ROBOT, EFFECTS, RUNS = "arm.urdf", "effects.toml", "runs"
-TRAIN_STEPS = 1200
+TRAIN_STEPS = 800
 PATIENCE = 300  # [s] after which a run counts as failed
 POLL = 0.002  # [s]
 LINK = """<link name="{name}"><inertial><origin xyz="{c} 0 0"/><mass value="{m}"/>

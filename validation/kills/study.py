@@ -29,7 +29,7 @@ from validation.kills.standing import digests, final_files
 from validation.kills.trial import Reference, Row, tried
 
 SEED = 0
-TRIALS = {"simulate": 12, "diagnose": 20, "train": 18}  # into an empty folder, and as many into a finished one
+TRIALS = {"simulate": 15, "diagnose": 25, "train": 10}  # into an empty folder, and as many into a finished one
 QUICK = {"simulate": 3, "diagnose": 3}
 LATEST = 0.98  # of the uninterrupted time, at which a signal may come
 
