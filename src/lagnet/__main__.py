@@ -1,11 +1,14 @@
-"""The command `lagnet`, also as `python -m lagnet`: Ctrl-C is one line even while modules are loaded."""
+"""The command `lagnet`, also as `python -m lagnet`: what Ctrl-C does from the first moment to the last."""
 
 from __future__ import annotations
 
 import signal
 import sys
+from types import FrameType
 
 INTERRUPTED = 3
+AGAIN = 0.02  # [s] after which it is asked again whether modules are still being loaded
+IMPORT = "<frozen importlib._bootstrap>"
 
 
 def run() -> int:
@@ -14,16 +17,33 @@ def run() -> int:
     Returns:
         The exit code, see `lagnet.cli.main`.
     """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, control_c)
+        signal.signal(signal.SIGALRM, control_c)
     try:
         from lagnet.cli.main import main
 
         code = main()
-        # All is written and said; while the interpreter ends, Ctrl-C would kill it and hide the exit code.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        return code
     except KeyboardInterrupt:
         print("lagnet: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        code = INTERRUPTED
+    # All is written and said; while the interpreter ends, Ctrl-C would kill it and hide the exit code.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    return code
+
+
+def control_c(_: int, frame: FrameType | None) -> None:
+    """Interrupts, but never while a module is loaded: compiled ones crash when that fails halfway.
+
+    Raises:
+        KeyboardInterrupt: no module is being loaded; otherwise the question is put again soon.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename == IMPORT:
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":

@@ -1,38 +1,60 @@
-"""The command from its first moment: Ctrl-C while modules are loaded is one line too."""
+"""The command from its first moment to its last: Ctrl-C is one line, waits for modules, and hides no exit code."""
 
 from __future__ import annotations
 
 import signal
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from lagnet import __main__ as entry
 
-
-class PressedWhileLoading:
-    """Finds a module by pressing Ctrl-C."""
-
-    def find_spec(self, name: str, *_: object) -> None:
-        if name == "lagnet.cli.main":
-            raise KeyboardInterrupt
+LOADED = """import signal, time
+signal.raise_signal(signal.SIGINT)
+time.sleep(0.1)
+print("loaded", flush=True)
+"""
 
 
-def test_control_c_while_modules_are_loaded(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.delitem(sys.modules, "lagnet.cli.main", raising=False)
-    monkeypatch.setattr(sys, "meta_path", [PressedWhileLoading(), *sys.meta_path])
+@pytest.fixture(autouse=True)
+def handlers():
+    """Handlers of signals as they were before."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGALRM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_control_c_waits_while_a_module_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "pressed_while_loading.py").write_text(LOADED)
+    monkeypatch.syspath_prepend(tmp_path)
+    signal.signal(signal.SIGINT, entry.control_c)
+    signal.signal(signal.SIGALRM, entry.control_c)
+    with pytest.raises(KeyboardInterrupt):
+        import_and_wait()
+    assert sys.modules.pop("pressed_while_loading")
+
+
+def import_and_wait() -> None:
+    import pressed_while_loading  # noqa: F401  # pyright: ignore[reportMissingImports]
+
+    signal.pause()  # the question is put again here
+
+
+def test_control_c_between_modules_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    def pressed(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("lagnet.cli.main.main", pressed)
     assert entry.run() == 3
     assert capsys.readouterr().err == "lagnet: interrupted\n"
 
 
-def test_it_runs_the_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(sys, "argv", ["lagnet", "--version"])
-    handler = signal.getsignal(signal.SIGINT)
-    try:
-        assert entry.run() == 0
-        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN  # while the interpreter ends
-    finally:
-        signal.signal(signal.SIGINT, handler)
-    assert capsys.readouterr().out.startswith("lagnet ")
+def test_it_runs_the_command_line_and_ends_undisturbed() -> None:
+    code = "import signal, sys; sys.argv = ['lagnet', '--version']; from lagnet.__main__ import run; code = run();"
+    code += "signal.raise_signal(signal.SIGINT); sys.exit(code)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("lagnet ")
