@@ -77,6 +77,7 @@ def interrupted(command: Command, out: Path, by: Interruption) -> Ended:
             process.kill()
             printed, said = process.communicate()
             said += "\nwent on after the interruption"
+    felt = felt and (by.kind != "kill -9" or process.returncode == -signal.SIGKILL)  # else it had ended just before
     return Ended(felt, process.returncode, printed, said, time.perf_counter() - began)
 
 

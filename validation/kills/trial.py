@@ -114,10 +114,11 @@ def _looked_at(reference: Reference, by: Interruption, ended: Ended, out: Path, 
 def clean(kind: str, ended: Ended, out: Path, complete: bool) -> bool:
     """Whether a command ended as promised: the code, and one line that says what happened, and where on a full disk."""
     said, lines = ended.said.strip(), ended.said.strip().splitlines()
+    refused = ended.code == 2 and len(lines) == 1 and "not empty" in said  # by simulate, as without an interruption
     if kind == "kill -9":
         return ended.code == -9
     if kind == "Ctrl-C":
         told = sum("interrupted" in line for line in (*lines, *ended.printed.splitlines()))
-        return (ended.code == 3 and told == 1 and len(lines) <= 1) or (ended.code == 0 and complete and not said)
-    refused = "not empty" in said  # simulate does not begin in a folder that holds something
-    return ended.code == 2 and len(lines) == 1 and str(out) in said and (refused or REASON in said)
+        done = ended.code == 0 and complete and not said
+        return done or refused or (ended.code == 3 and told == 1 and len(lines) <= 1)
+    return refused or (ended.code == 2 and len(lines) == 1 and str(out) in said and REASON in said)
