@@ -80,6 +80,20 @@ def test_time_and_counters_are_one_number_a_row(tmp_path: Path, name: str, value
         load_recording(tmp_path / "set")
 
 
+@pytest.mark.parametrize("fps", [10**30, 1e-320, float("inf"), "100", True])
+def test_a_rate_that_no_robot_has_is_no_clock(tmp_path: Path, fps: object) -> None:
+    found = load_recording(lerobot(tmp_path, info={"fps": fps}))
+    np.testing.assert_allclose(found.time, TIME, atol=1e-6)
+    assert found.warnings == ()
+
+
+def test_a_set_without_samples_is_refused(tmp_path: Path) -> None:
+    (file,) = (lerobot(tmp_path, names=["pan"], state=Q[:, 0], action=Q[:, 0]) / "data").glob("*/*.parquet")
+    pq.write_table(pq.read_table(file).slice(0, 0), file)
+    with pytest.raises(RecordingError, match="no samples"):
+        load_recording(tmp_path / "set")
+
+
 def test_an_unknown_version_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=r"is of version 'v1.6' \(valid: v2.0, v2.1, v3.0\)"):
         load_recording(lerobot(tmp_path, "v1.6"))

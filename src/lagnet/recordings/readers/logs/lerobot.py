@@ -20,6 +20,7 @@ from lagnet.recordings.readers.source import refuse_if_huge
 
 INFO = Path("meta") / "info.json"
 STATE, ACTION = "observation.state", "action"
+SLOWEST, FASTEST = 1e-3, 1e6  # [Hz] of cameras and robots
 EXACT = 2.0**53  # beyond which counters are no whole numbers any more
 COUNTED = ("timestamp", "frame_index", "episode_index")
 FEATURES = {
@@ -121,6 +122,8 @@ def _table(path: Path, features: dict[str, Any], where: str) -> dict[str, np.nda
         if len(found) > 1:
             raise RecordingError(f"{name} has different numbers of joints in its files", where=where)
     table = {name: np.concatenate([part[name] for part in parts]) for name in wanted if name in common}
+    if not len(table[STATE]):
+        raise RecordingError("holds no samples", where=where, next_step="download the data of the set")
     order = np.lexsort((table["frame_index"], table["episode_index"]))
     return {name: values[order] for name, values in table.items()}
 
@@ -212,7 +215,7 @@ def _aligned(values: np.ndarray, names: tuple[str, ...] | None, joints: Sequence
 
 def _clock(stamps: np.ndarray, frames: np.ndarray, fps: Any) -> tuple[np.ndarray, tuple[str, ...], bool]:
     """Time [s], what to tell of it, and whether it was recorded."""
-    if not isinstance(fps, (int, float)) or not np.isfinite(fps) or fps <= 0:
+    if not isinstance(fps, (int, float)) or not SLOWEST <= fps <= FASTEST:
         return stamps, (), True
     made = frames / fps
     if np.max(np.abs(stamps - made)) > MADE + 1e-6 * np.max(np.abs(stamps)):
