@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from types import FrameType
@@ -27,8 +28,22 @@ def run() -> int:
     except KeyboardInterrupt:
         print("lagnet: interrupted", file=sys.stderr)
         code = INTERRUPTED
-    # All is written and said; while the interpreter ends, Ctrl-C would kill it and hide the exit code.
+    return leave(code)
+
+
+def leave(code: int) -> int:
+    """All is written and said: from here to the end of the interpreter, nothing hides the exit code.
+
+    An interrupted interpreter is left at once: Python ends one by signal 2 whose Ctrl-C came inside of exec or eval,
+    though it was handled, and JAX may crash while it is taken down in the middle of its work.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.signal(signal.SIGALRM, signal.SIG_IGN)
+    if code == INTERRUPTED:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
     return code
 
 

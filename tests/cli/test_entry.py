@@ -43,13 +43,12 @@ def import_and_wait() -> None:
     signal.pause()  # the question is put again here
 
 
-def test_control_c_between_modules_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    def pressed(*_: object) -> int:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("lagnet.cli.main.main", pressed)
-    assert entry.run() == 3
-    assert capsys.readouterr().err == "lagnet: interrupted\n"
+@pytest.mark.parametrize("pressed", ["raise KeyboardInterrupt", "exec('raise KeyboardInterrupt')"])
+def test_control_c_is_one_line_and_code_3(pressed: str) -> None:
+    code = f"import lagnet.cli.main as m\ndef pressed():\n    {pressed}\nm.main = pressed\n"
+    code += "import sys, lagnet.__main__ as entry\nsys.exit(entry.run())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (3, "lagnet: interrupted\n")
 
 
 def test_it_runs_the_command_line_and_ends_undisturbed() -> None:
