@@ -12,9 +12,12 @@ import json
 import math
 import os
 import shutil
+import signal
 import stat
 import tempfile
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -43,22 +46,35 @@ def write_whole(path: str | Path, content: bytes | str) -> Path:
 
     Returns:
         The path.
+
+    Raises:
+        OSError: it cannot be written; `filename` is the path, not that of the draft.
     """
     path = Path(path)
     data = content.encode("utf-8") if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=PART)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with _named(path):
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=PART)
+        try:
+            with os.fdopen(handle, "wb") as stream:
+                stream.write(data)
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.chmod(name, 0o644)
+            os.replace(name, path)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
     return path
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Errors of the system that say where: a write to a full disk names no file, and a draft's name helps nobody."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
 
 
 def write_folder_whole(folder: str | Path, fill: Callable[[Path], Any]) -> Path:
@@ -75,7 +91,8 @@ def write_folder_whole(folder: str | Path, fill: Callable[[Path], Any]) -> Path:
     folder.parent.mkdir(parents=True, exist_ok=True)
     made = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}.", suffix=PART))
     try:
-        fill(made)
+        with _named_in(made, folder):
+            fill(made)
         os.chmod(made, 0o755)
         _exchange(made, folder)
     finally:
@@ -83,9 +100,64 @@ def write_folder_whole(folder: str | Path, fill: Callable[[Path], Any]) -> Path:
     return folder
 
 
+def write_together(folder: str | Path, fill: Callable[[Path], Any], last: str = "") -> Path:
+    """Writes several files and folders that belong together; all are complete before the first takes its place.
+
+    What else stands in the folder is left alone. Ctrl-C while they take their places waits until all have.
+
+    Args:
+        folder: where they shall stand.
+        fill: writes into the draft that it is given.
+        last: the one that takes its place last: where it stands, all others do.
+
+    Returns:
+        The folder.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    made = Path(tempfile.mkdtemp(dir=folder, prefix=".", suffix=PART))
+    try:
+        with _named_in(made, folder):
+            fill(made)
+        with _named_in(made, folder), _control_c_waits():
+            for part in sorted(made.iterdir(), key=lambda part: part.name == last):
+                _exchange(part, folder / part.name)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+    return folder
+
+
+@contextmanager
+def _named_in(made: Path, folder: Path) -> Iterator[None]:
+    """Errors of the system name the place where a file shall stand, not the draft in which it is written."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None or not Path(error.filename).is_relative_to(made):
+            raise
+        with _named(folder / Path(error.filename).relative_to(made)):
+            raise
+
+
+@contextmanager
+def _control_c_waits() -> Iterator[None]:
+    """Ctrl-C takes effect at the end of the block; only the main thread can have it wait."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came:
+        raise KeyboardInterrupt
+
+
 def _exchange(made: Path, folder: Path) -> None:
-    """Puts a folder in the place of another; what stood there is removed last, and comes back if the step fails."""
-    if not folder.exists():
+    """Puts a file or a folder in the place of another; a folder that stood there is removed last, or comes back."""
+    if not (made.is_dir() and folder.is_dir()):
         os.replace(made, folder)
         return
     if _swapped(made, folder):  # what stood there is now the draft, which is removed

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from tests.recordings.made_logs import (
     COMMAND,
@@ -58,6 +60,38 @@ def test_degrees_and_scales_to_a_hundred_are_refused_until_stated(factor: float,
         load_recording(path)
     stated = ColumnMap(scale={"q": 1 / factor, "command": 1 / factor})
     np.testing.assert_allclose(load_recording(path, columns=stated).q, Q, atol=1e-12)
+
+
+def test_a_single_joint_may_be_stored_as_plain_numbers(tmp_path: Path) -> None:
+    found = load_recording(lerobot(tmp_path, names=["pan"], state=Q[:, 0], action=COMMAND[:, 0]))
+    np.testing.assert_array_equal(found.q, Q[:, :1])
+    np.testing.assert_array_equal(found.command, COMMAND[:, :1])
+
+
+@pytest.mark.parametrize("name", ["timestamp", "frame_index", "episode_index"])
+@pytest.mark.parametrize(
+    "values", [[[1.0]] * N, [[]] * N, [np.nan] * N, [1e300] * N], ids=["lists", "empty", "nan", "big"]
+)
+def test_time_and_counters_are_one_number_a_row(tmp_path: Path, name: str, values: list) -> None:
+    (file,) = (lerobot(tmp_path) / "data").glob("*/*.parquet")
+    table = pq.read_table(file)
+    pq.write_table(table.set_column(table.column_names.index(name), name, pa.array(values)), file)
+    with pytest.raises(RecordingError):
+        load_recording(tmp_path / "set")
+
+
+@pytest.mark.parametrize("fps", [10**30, 1e-320, float("inf"), "100", True])
+def test_a_rate_that_no_robot_has_is_no_clock(tmp_path: Path, fps: object) -> None:
+    found = load_recording(lerobot(tmp_path, info={"fps": fps}))
+    np.testing.assert_allclose(found.time, TIME, atol=1e-6)
+    assert found.warnings == ()
+
+
+def test_a_set_without_samples_is_refused(tmp_path: Path) -> None:
+    (file,) = (lerobot(tmp_path, names=["pan"], state=Q[:, 0], action=Q[:, 0]) / "data").glob("*/*.parquet")
+    pq.write_table(pq.read_table(file).slice(0, 0), file)
+    with pytest.raises(RecordingError, match="no samples"):
+        load_recording(tmp_path / "set")
 
 
 def test_an_unknown_version_is_refused(tmp_path: Path) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.recordings.made_logs import COMMAND, JOINTS, TAU, TIME, BagWriter, N, Q, V, stamps
+from tests.recordings.made_logs import COMMAND, JOINTS, TAU, TIME, BagWriter, N, Q, V, made_bag, stamps
 
 from lagnet.errors import RecordingError
 from lagnet.recordings.loading.load import load_recording
@@ -250,3 +251,12 @@ def test_a_bag_that_another_library_wrote(tmp_path: Path) -> None:
     for name in ("time", "q", "v", "tau"):
         np.testing.assert_array_equal(getattr(left, name), getattr(right, name))
     assert left.joints == right.joints == JOINTS
+
+
+def test_a_number_of_messages_that_is_none_breaks_nothing(tmp_path: Path) -> None:
+    path = made_bag(tmp_path, "db3")
+    metadata = path / "metadata.yaml"
+    text = metadata.read_text()
+    metadata.write_text(re.sub(r"message_count: 120\b", "message_count: many", text))
+    assert metadata.read_text() != text
+    np.testing.assert_array_equal(load_recording(path, joints=JOINTS).q, Q)

@@ -65,6 +65,7 @@ def test_a_servo_file_gives_every_joint_its_law(tmp_path):
         ("[all]\nkq = 1", "unknown parameter"),
         ("[all]\nkp = -1", "kp is -1"),
         ("[", "read"),
+        ("kp = " + 5000 * "[", "read"),
     ],
 )
 def test_a_wrong_servo_file_gets_one_clear_line(tmp_path, text, words):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from datetime import datetime
 
 import pytest
@@ -104,3 +105,14 @@ def test_a_store_is_read_through_fsspec(tmp_path):
     assert not path.exists()
     with pytest.raises(LagnetError, match="cannot be fetched"), local_copy("memory://fleet/none.csv"):
         pass
+
+
+def test_names_that_no_file_can_have_and_pipes_are_refused(tmp_path):
+    with pytest.raises(LagnetError, match="states no recording"):
+        read_manifest(write(tmp_path, MAKE.replace("ur5", "a" * 5000 + ".urdf")))
+    os.mkfifo(tmp_path / "index.csv")
+    with pytest.raises(LagnetError, match="pipe"):
+        read_manifest(write(tmp_path, 'index = "index.csv"\n' + MAKE))
+    os.mkfifo(tmp_path / "fleet_pipe.toml")
+    with pytest.raises(LagnetError, match="pipe"):
+        read_manifest(tmp_path / "fleet_pipe.toml")

@@ -83,8 +83,11 @@ def test_a_killed_training_resumes_to_the_same_weights(fitted, tmp_path, monkeyp
     with pytest.raises(Killed):
         train([pendulum()], settings=TINY, training=SHORT, checkpoint=path, progress=dies_late)
     assert path.exists()
-    resumed = train([pendulum()], settings=TINY, training=SHORT, checkpoint=path)
-    assert resumed.history.reports[0].step > 100
+    again: list = []
+    resumed = train([pendulum()], settings=TINY, training=SHORT, checkpoint=path, progress=again.append)
+    assert again[0].step > 100
+    assert [r.step for r in resumed.history.reports] == [r.step for r in fitted.history.reports]
+    assert resumed.stats["held_out_error"] == fitted.stats["held_out_error"]
     q = np.array([[0.4]])
     np.testing.assert_array_equal(resumed.model.gravity_torque(q), fitted.model.gravity_torque(q))
 
@@ -92,8 +95,9 @@ def test_a_killed_training_resumes_to_the_same_weights(fitted, tmp_path, monkeyp
 def test_a_checkpoint_of_another_run_or_a_damaged_one_is_refused(tmp_path):
     state = {"x": jnp.arange(3.0), "key": jax.random.key(4)}
     path = tmp_path / "state.npz"
-    write_checkpoint(path, state, "mine")
-    back = read_checkpoint(path, state, "mine")
+    write_checkpoint(path, state, "mine", [{"step": 100}])
+    back, told = read_checkpoint(path, state, "mine")
+    assert told == [{"step": 100}]
     np.testing.assert_array_equal(back["x"], state["x"])
     assert jax.random.uniform(back["key"]) == jax.random.uniform(state["key"])
     with pytest.raises(ModelError, match="another training"):

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from validation.fuzz.arrays import archive_changed, table_changed
 from validation.fuzz.seeds import plain
 
 NUMBERS = ("1e300", "-1e308", "nan", "inf", "-inf", "0", "-1", "1e-320", "99999999999999999999", "0x10", "true", "1,5")
@@ -25,9 +26,17 @@ TEXTS = (
 PIECES = (b"\x00", b"\xff\xfe", b"\xef\xbb\xbf", b"\n" * 50, b'"', b"{" * 300, b"[" * 2000, b"<a>" * 300, b"PK\x03\x04")
 
 
+GENTLE = 0.5  # of the inputs: one number, word or array is changed and all else is sound
+
+
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """One to three changes of a file's bytes; a gzip coat is put on again, most times."""
+    """One to three changes of a file's bytes, or one of its content; a gzip coat is put on again, most times."""
     inner, coated = plain(data)
+    if rng.random() < GENTLE:
+        change = next((c for magic, c in OF_CONTENT.items() if inner.startswith(magic)), None)
+        text = (_number_changed, _word_changed)[int(rng.integers(2))]
+        inner = (change or text)(inner, rng)
+        return gzip.compress(inner, compresslevel=1, mtime=0) if coated else inner
     if coated and rng.random() < 0.3:
         return _bytes_changed(data, rng)
     for _ in range(int(rng.integers(1, 4))):
@@ -81,4 +90,5 @@ def _word_changed(data: bytes, rng: np.random.Generator) -> bytes:
     return data[: place.start()] + word + data[place.end() :]
 
 
+OF_CONTENT = {b"PK": archive_changed, b"PAR1": table_changed}
 CHANGES = (_bytes_changed, _cut, _repeated, _left_out, _inserted, _number_changed, _number_changed, _word_changed)

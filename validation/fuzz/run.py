@@ -22,11 +22,17 @@ from lagnet.recordings.loading.column_map import read_column_map
 from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.quality.screen import screen
 from lagnet.rigid_body.robot import load_description
+from lagnet.servos.servo_file import read_servo_file
 from lagnet.simulation.effects_file import read_effects
+from lagnet.tracking.manifest import read_manifest
 from validation.fuzz.mutate import mutated
-from validation.fuzz.seeds import write_seeds
+from validation.fuzz.seeds import Seed, write_seeds
 
 PATIENCE = 10  # [s] for one input
+WEIGHTS = {  # of the kinds of input
+    **{"recording": 0.3, "log": 0.2, "robot": 0.15, "model": 0.15},
+    **{"map": 0.05, "effects": 0.05, "servo": 0.05, "manifest": 0.05},
+}
 LONGEST_LINE = 20_000  # characters of a message
 
 
@@ -48,8 +54,11 @@ def fuzz(count: int, seed: int, tally: Tally | None = None) -> Tally:
         "recording": lambda path: screen(load_recording(path)),
         "map": read_column_map,
         "effects": lambda path: read_effects(path, robot),
+        "servo": lambda path: read_servo_file(path, robot.joints, robot.armature),
+        "manifest": read_manifest,
         "robot": load_any,
-        "model": lambda path: load_any(path.parent),
+        "model": load_any,
+        "log": lambda path: screen(load_recording(path)),
     }
     assert lagnet.models.files.saving.FORMAT
     with tempfile.TemporaryDirectory() as name:
@@ -57,16 +66,22 @@ def fuzz(count: int, seed: int, tally: Tally | None = None) -> Tally:
         seeds = write_seeds(folder)
         broken = folder / "broken"
         for _ in range(count):
-            kind = list(seeds)[int(rng.integers(len(seeds)))]
-            path = seeds[kind][int(rng.integers(len(seeds[kind])))]
+            kind = str(rng.choice(list(WEIGHTS), p=list(WEIGHTS.values())))
+            seed_file = seeds[kind][int(rng.integers(len(seeds[kind])))]
             shutil.rmtree(broken, ignore_errors=True)
-            if kind == "model":
-                shutil.copytree(path.parent, broken)
-            broken.mkdir(exist_ok=True)
-            target = broken / path.name
-            target.write_bytes(mutated(path.read_bytes(), rng))
-            _give(readers[kind], target, tally)
+            _give(readers[kind], _broken(seed_file, broken, rng), tally)
     return tally
+
+
+def _broken(seed: Seed, folder: Path, rng: np.random.Generator) -> Path:
+    """The copy of an input of which one file is broken."""
+    given = folder / seed.read.name
+    if seed.read.is_dir():
+        shutil.copytree(seed.read, given)
+    given.parent.mkdir(exist_ok=True)
+    target = folder / seed.changed.relative_to(seed.read.parent)
+    target.write_bytes(mutated(seed.changed.read_bytes(), rng))
+    return given
 
 
 def _give(read: Callable[[Path], Any], target: Path, tally: Tally) -> None:

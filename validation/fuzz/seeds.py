@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import gzip
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import scipy.io
+from tests.recordings.made_logs import MAKERS
 
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
@@ -45,8 +47,43 @@ Izz = 0.01
 """
 
 
-def write_seeds(folder: Path) -> dict[str, tuple[Path, ...]]:
-    """Writes the sound files; their paths by what reads them: recording, map, effects, robot, model."""
+SERVO = """[all]
+kp = 30.0
+kd = 1.0
+delay = 0.01
+[elbow_joint]
+torque_limit = 100.0
+damping = 0.5
+"""
+MANIFEST = """[settings]
+seed = 1
+[[make]]
+name = "arm"
+robot = "arm.urdf"
+[[robot]]
+name = "arm_01"
+make = "arm"
+[[robot.recordings]]
+files = "run.csv"
+date = 2026-01-31
+"""
+
+
+@dataclass(frozen=True)
+class Seed:
+    """A sound input.
+
+    Args:
+        read: file or folder that is given to a reader.
+        changed: the file in it, or itself, that is broken.
+    """
+
+    read: Path
+    changed: Path
+
+
+def write_seeds(folder: Path) -> dict[str, tuple[Seed, ...]]:
+    """Writes the sound inputs, by what reads them: recording, log, map, effects, servo, manifest, robot, model."""
     rng = np.random.default_rng(0)
     time = np.arange(60) / 100.0
     q = np.sin(time[:, None] * np.array([3.0, 4.0])) + 1e-4 * rng.standard_normal((60, 2))
@@ -57,14 +94,24 @@ def write_seeds(folder: Path) -> dict[str, tuple[Path, ...]]:
     robot.write_urdf(folder / "arm.urdf")
     robot.write_mjcf(folder / "arm.xml")
     (folder / "map.toml").write_text(MAP, encoding="utf-8")
-    (folder / "effects.toml").write_text(EFFECTS, encoding="utf-8")
-    return {
-        "recording": (*records, folder / "run.mat"),
-        "map": (folder / "map.toml",),
-        "effects": (folder / "effects.toml",),
-        "robot": (folder / "arm.urdf", folder / "arm.xml"),
-        "model": _models(folder, robot),
-    }
+    for name, text in (("map", MAP), ("effects", EFFECTS), ("servo", SERVO), ("manifest", MANIFEST)):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    texts = {name: (folder / f"{name}.toml",) for name in ("map", "effects", "servo", "manifest")}
+    files = {"recording": (*records, folder / "run.mat"), **texts, "robot": (folder / "arm.urdf", folder / "arm.xml")}
+    alone = {kind: tuple(Seed(path, path) for path in paths) for kind, paths in files.items()}
+    models = tuple(Seed(path.parent, path) for path in _models(folder, robot))
+    return alone | {"log": _logs(folder / "logs"), "model": models}
+
+
+def _logs(folder: Path) -> tuple[Seed, ...]:
+    """Logs of other programs, each in a folder of its own; of those that are folders, every file."""
+    seeds: list[Seed] = []
+    for index, make in enumerate(MAKERS.values()):
+        (folder / str(index)).mkdir(parents=True)
+        read = make(folder / str(index))
+        inside = sorted(path for path in read.rglob("*") if path.is_file()) if read.is_dir() else [read]
+        seeds += [Seed(read, path) for path in inside]
+    return tuple(seeds)
 
 
 def _models(folder: Path, robot) -> tuple[Path, ...]:

@@ -49,12 +49,13 @@ def inspect_log(
     """Say what a log holds, what its effort column most likely is, and write the mapping file to edit."""
     from lagnet.cli.parts.inspection import inspect_file
     from lagnet.cli.shared.console import say
+    from lagnet.files import write_whole
 
     lines, text = inspect_file(file, robot, columns, _show if sys.stderr.isatty() else None)
     for line in lines:
         say(line)
     path = out or Path(f"{file.name or 'log'}.columns.toml")
-    path.write_text(text, encoding="utf-8")
+    write_whole(path, text)
     say(f"mapping file to edit: {path}")
 
 

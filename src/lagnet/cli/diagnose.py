@@ -81,6 +81,7 @@ def command(
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.nominal.log_alignment import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
+    from lagnet.files import write_together
     from lagnet.recordings.loading.load import load_recording
     from lagnet.recordings.loading.opening import recordings_in
     from lagnet.reports.diagnosis_report import write_report
@@ -106,13 +107,17 @@ def command(
         factors = numbers(gains, "--gains") if gains else None
         return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
-    write_diagnosis(result, out)
+    evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
+
+    def fill(folder: Path) -> None:
+        write_diagnosis(result, folder)
+        write_report(result.verdict.to_dict(), evidence, folder / "report.html")
+
+    write_together(out, fill, last="verdict.json")
     if mcap:
         from lagnet.cli.parts.mcap import write_mcap_of
 
         say(f"MCAP: {write_mcap_of(result, mcap)}")
-    evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
-    write_report(result.verdict.to_dict(), evidence, out / "report.html")
     if simulator:
         replayed = replay_held_out(result, simulator, out)
         write_report(result.verdict.to_dict(), evidence, out / "report.html", replayed)

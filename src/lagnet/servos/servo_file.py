@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.errors import LagnetError, closest
+from lagnet.files import read_bounded
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, LAW, NAMES, NEUTRAL
 
@@ -40,10 +41,12 @@ def read_servo_file(path: str | Path, joints: Sequence[str], armature: np.ndarra
     """
     where = str(path)
     try:
-        if Path(path).stat().st_size > MOST_BYTES:
-            raise LagnetError("is far larger than any servo file", where=where)
-        tables = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        tables = tomllib.loads(read_bounded(path, MOST_BYTES).decode("utf-8"))
+    except OSError as error:
+        raise LagnetError(
+            f"cannot be read ({error.strerror})", where=where, next_step="see the docs on servos"
+        ) from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise LagnetError(f"cannot be read ({error})", where=where, next_step="see the docs on servos") from None
     for name in tables:
         if name != EVERY and name not in joints:

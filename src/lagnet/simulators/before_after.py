@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from lagnet.files import write_whole
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.descriptions.writing import write_text
@@ -116,7 +118,9 @@ def write_replay(result: BeforeAfter, folder: str | Path) -> tuple[Path, Path]:
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
     write_text(out / JSON, json.dumps(result.to_json(), indent=1, allow_nan=False) + "\n")
-    pq.write_table(pa.table(columns_of(result)), out / TABLE, compression="zstd")
+    table = io.BytesIO()
+    pq.write_table(pa.table(columns_of(result)), table, compression="zstd")
+    write_whole(out / TABLE, table.getvalue())
     return out / JSON, out / TABLE
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import os
 import re
 import tempfile
 from collections.abc import Iterator
@@ -29,7 +30,7 @@ def join(base: Path, path: str) -> str:
 
 def exists(path: str) -> bool:
     """Whether a file of this machine is there."""
-    return not is_address(path) and Path(path).exists()
+    return not is_address(path) and os.path.exists(path)  # False for names that no file can have
 
 
 def matching(base: Path, pattern: str, where: str) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,9 +11,11 @@ from datetime import datetime
 from pathlib import Path
 
 from lagnet.errors import LagnetError
+from lagnet.files import read_bounded
 from lagnet.tracking.dates import parsed
 
 COLUMNS = ("robot", "make", "file", "date")
+MAX_BYTES = 512 * 1024**2
 OPTIONAL = ("temperature",)
 UNSAFE = set('/\\:*?"<>|')
 
@@ -35,8 +38,8 @@ def read_index(path: Path) -> list[IndexRow]:
         LagnetError: not readable, a missing or unknown column, or a cell that cannot be read, with its line.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            return list(_rows(csv.DictReader(stream), str(path)))
+        text = read_bounded(path, MAX_BYTES).decode("utf-8-sig")
+        return list(_rows(csv.DictReader(io.StringIO(text, newline="")), str(path)))
     except OSError as error:
         raise LagnetError(f"cannot be read ({error.strerror})", where=str(path)) from None
     except (csv.Error, UnicodeDecodeError) as error:

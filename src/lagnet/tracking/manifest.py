@@ -17,6 +17,7 @@ Large fleets state `index = "recordings.csv"` with the columns robot, make, file
 
 from __future__ import annotations
 
+import errno
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -25,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import LagnetError, closest
+from lagnet.files import read_bounded
 from lagnet.tracking.dates import as_date
 from lagnet.tracking.files import exists, join, matching
 from lagnet.tracking.index import read_index
@@ -155,11 +157,10 @@ def _ordered(found: list[TrackedRecording], where: str) -> tuple[TrackedRecordin
 
 def _parse(path: Path) -> dict[str, Any]:
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise LagnetError("is far larger than any manifest", where=str(path), next_step="use an index file")
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(read_bounded(path, MAX_BYTES).decode("utf-8-sig"))
     except OSError as error:
-        raise LagnetError(f"cannot be read ({error.strerror})", where=str(path)) from None
+        step = "use an index file" if error.errno == errno.EFBIG else None
+        raise LagnetError(f"cannot be read ({error.strerror})", where=str(path), next_step=step) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise LagnetError(f"is not valid TOML ({error})", where=str(path)) from None
 

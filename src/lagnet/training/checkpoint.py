@@ -24,17 +24,19 @@ def fingerprint(**said: Any) -> str:
     return hashlib.sha256(json.dumps(said, sort_keys=True, default=str).encode()).hexdigest()
 
 
-def write_checkpoint(path: Path, state: Any, about: str) -> None:
-    """Write all arrays of a state; the file appears whole or not at all."""
+def write_checkpoint(path: Path, state: Any, about: str, told: Any = None) -> None:
+    """Write all arrays of a state, and plain values that were told so far; the file appears whole or not at all."""
     leaves = jax.tree.leaves(state)
     arrays = {f"leaf_{i}": np.asarray(_plain(x)) for i, x in enumerate(leaves)}
     stream = io.BytesIO()
-    np.savez(stream, allow_pickle=False, about=np.frombuffer(about.encode(), np.uint8), **arrays)
+    texts = {"about": about, "told": json.dumps(told)}
+    texts = {name: np.frombuffer(text.encode(), np.uint8) for name, text in texts.items()}
+    np.savez(stream, allow_pickle=False, **texts, **arrays)
     write_whole(path, stream.getvalue())
 
 
-def read_checkpoint(path: Path, like: Any, about: str) -> Any | None:
-    """The state in a checkpoint, None where there is none.
+def read_checkpoint(path: Path, like: Any, about: str) -> tuple[Any, Any] | None:
+    """The state in a checkpoint and what was told with it, None where there is none.
 
     Args:
         path: the file.
@@ -52,12 +54,13 @@ def read_checkpoint(path: Path, like: Any, about: str) -> Any | None:
         if bytes(archive.array("about")).decode() != about:
             raise ModelError("belongs to another training", where=str(path), next_step="remove it to start anew")
         wanted = {f"leaf_{i}": _plain(x).shape for i, x in enumerate(leaves)}
-        if {n: s for n, s in archive.shapes.items() if n != "about"} != wanted:
+        if {n: s for n, s in archive.shapes.items() if n not in ("about", "told")} != wanted:
             raise ModelError("does not fit this training", where=str(path), next_step="remove it to start anew")
         arrays = [archive.array(name) for name in wanted]
-    except (RecordingError, KeyError, UnicodeDecodeError):
+        told = json.loads(bytes(archive.array("told")))
+    except (RecordingError, KeyError, ValueError):
         raise ModelError("is damaged", where=str(path), next_step="remove it to start anew") from None
-    return tree.unflatten([_like(x, leaf) for x, leaf in zip(arrays, leaves, strict=True)])
+    return tree.unflatten([_like(x, leaf) for x, leaf in zip(arrays, leaves, strict=True)]), told
 
 
 def _is_key(leaf: Any) -> bool:

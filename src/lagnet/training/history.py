@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,20 @@ class History:
     kept_step: int = 0
     stopped_early: bool = False
     interrupted: bool = False
+
+    def plain(self) -> list[dict]:
+        """All reports as plain values, for a checkpoint."""
+        return [asdict(report) for report in self.reports]
+
+    @staticmethod
+    def of_plain(values: list[dict]) -> History:
+        """The history of which `plain` gave the reports.
+
+        Raises:
+            TypeError: these are none.
+        """
+        shares = ("train", "held_out")
+        return History([Report(**{n: tuple(x) if n in shares else x for n, x in v.items()}) for v in values])
 
     def followed_by(self, later: History) -> History:
         """This training and one that went on from its result, counted through."""

@@ -50,6 +50,7 @@ def diagnose_on_motion(
     from lagnet.cli.shared.console import say
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
     from lagnet.diagnosis.motion.writing import write_motion_diagnosis
+    from lagnet.files import write_together
     from lagnet.reports.motion_report import write_motion_report
     from lagnet.servos.servo_file import read_servo_file
 
@@ -60,8 +61,12 @@ def diagnose_on_motion(
         servo = read_servo_file(actuator, robot.joints, robot.armature)
     say("diagnosing on motion: the recordings hold commands and no torque")
     result = diagnose_motion(fit, robot, holdout, servo=servo, gains=gains, seed=seed)
-    write_motion_diagnosis(result, out)
-    write_motion_report(result, out / "report.html")
+
+    def fill(folder: Path) -> None:
+        write_motion_diagnosis(result, folder)
+        write_motion_report(result, folder / "report.html")
+
+    write_together(out, fill, last="verdict.json")
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -9,21 +10,24 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
+from lagnet.files import write_folder_whole, write_whole
 from lagnet.models.corrected.servo_driven import save_servo_driven
 
 
 def write_motion_diagnosis(diagnosis: MotionDiagnosis, folder: str | Path) -> Path:
-    """Writes verdict.json, holdout_motion.parquet and corrected/ into a folder.
+    """Writes verdict.json, holdout_motion.parquet and corrected/ into a folder, each whole or not at all.
 
     Returns:
         The folder.
     """
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
-    pq.write_table(holdout_motion_table(diagnosis), out / "holdout_motion.parquet")
-    effects = [{"effect": e.effect, "joint": e.joint, "status": e.status} for e in diagnosis.effects]
-    save_servo_driven(diagnosis.corrected, out / "corrected", {"effects": effects})
-    (out / "verdict.json").write_text(diagnosis.to_json(), encoding="utf-8")
+    verdict, table = diagnosis.to_json(), io.BytesIO()
+    pq.write_table(holdout_motion_table(diagnosis), table)
+    found = {"effects": [{"effect": e.effect, "joint": e.joint, "status": e.status} for e in diagnosis.effects]}
+    write_folder_whole(out / "corrected", lambda made: save_servo_driven(diagnosis.corrected, made, found))
+    write_whole(out / "holdout_motion.parquet", table.getvalue())
+    write_whole(out / "verdict.json", verdict)
     return out
 
 

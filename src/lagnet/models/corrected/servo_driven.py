@@ -12,6 +12,7 @@ from typing import Any, final
 import numpy as np
 
 from lagnet.errors import ModelError
+from lagnet.files import finite_json, write_whole
 from lagnet.models.corrected.folder import MOST_BYTES, write_description
 from lagnet.rigid_body.kinematic_tree import KinematicTree, kinematic_tree
 from lagnet.rollout.whole_arm import roll_out_arm
@@ -172,7 +173,7 @@ def save_servo_driven(model: ServoDrivenModel, folder: str | Path, found: Mappin
         "units": {p.name: p.unit for p in LAW},
         **({} if found is None else {"found": found}),
     }
-    (out / FILE).write_text(json.dumps(text, indent=1, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_whole(out / FILE, finite_json(text))
     return out
 
 

@@ -11,6 +11,7 @@ import scipy.io
 
 from lagnet.errors import RecordingError
 from lagnet.recordings.readers.arrays import column, columns_of
+from lagnet.recordings.readers.mat_layout import check_layout
 from lagnet.recordings.readers.source import Table, refuse_if_huge, table_of
 
 NUMERIC = ("double", "single", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "logical")
@@ -26,6 +27,7 @@ class MatArrays:
             raise RecordingError(
                 "is a MATLAB 7.3 (HDF5) file, which is not read", where=where, next_step="save it with the option -v7"
             )
+        self._guarded(lambda stream: check_layout(stream.getvalue(), where))
         listed = self._guarded(scipy.io.whosmat)
         self.shapes = {name: tuple(shape) for name, shape, kind in listed if kind in NUMERIC}
 
@@ -39,7 +41,7 @@ class MatArrays:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # scipy warns of doubled variables; the columns wanted are checked here
                 return read(io.BytesIO(self._data), **options)
-        except MemoryError:
+        except (MemoryError, RecordingError):
             raise
         except Exception:
             # A damaged file makes scipy's parser fail in many ways (struct.error, zlib.error, IndexError, …).

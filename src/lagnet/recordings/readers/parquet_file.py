@@ -16,21 +16,17 @@ JOINTS_KEY = b"lagnet_joints"  # file metadata: JSON list of joint names in colu
 
 
 class ParquetSource:
-    """An opened Parquet file; nothing but its footer has been parsed."""
+    """An opened Parquet file; nothing but its footer has been parsed. `names` are those of its columns."""
 
     def __init__(self, data: bytes, where: str):
         self._where = where
         try:
             self._file = pq.ParquetFile(pa.BufferReader(data))
-        except (pa.ArrowException, OSError) as error:
+            self.names = tuple(self._file.schema_arrow.names)
+        except (pa.ArrowException, OSError, UnicodeDecodeError) as error:  # the last: names that are no UTF-8
             raise RecordingError(
                 f"cannot be read as Parquet ({_first_line(error)})", where=where, next_step="copy or write it again"
             ) from None
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Column names."""
-        return tuple(self._file.schema_arrow.names)
 
     @property
     def joints(self) -> tuple[str, ...] | None:

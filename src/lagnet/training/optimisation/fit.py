@@ -21,7 +21,7 @@ from lagnet.training.optimisation.loop import CHUNK, JUDGED, Loop, LoopState, ma
 from lagnet.training.samples import TrainingSamples
 from lagnet.training.settings import TrainingSettings
 
-CHECKPOINT_EVERY = 20.0  # seconds between checkpoints
+CHECKPOINT_EVERY = 5.0  # seconds between checkpoints, which is what a kill may cost; writing one takes milliseconds
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,12 @@ class _Run:
         fresh = Standing(start, start.params, zero, worst, jnp.asarray(steps, jnp.int32))
         if self.task.checkpoint is None:
             return fresh
-        return read_checkpoint(self.task.checkpoint, fresh, self.task.about) or fresh
+        found = read_checkpoint(self.task.checkpoint, fresh, self.task.about)
+        if found is None:
+            return fresh
+        standing, told = found
+        self.history = History.of_plain(told)
+        return standing
 
     def finished(self) -> bool:
         step, total = int(self.standing.loop.step), int(self.standing.total)
@@ -180,7 +185,7 @@ class _Run:
         """Write the checkpoint."""
         self.saved_at = time.monotonic()
         if self.task.checkpoint is not None:
-            write_checkpoint(self.task.checkpoint, self.standing, self.task.about)
+            write_checkpoint(self.task.checkpoint, self.standing, self.task.about, self.history.plain())
 
     def result(self) -> Fitted:
         self.history.kept_step = int(self.standing.best_step)

@@ -20,6 +20,9 @@ from lagnet.recordings.readers.source import refuse_if_huge
 
 INFO = Path("meta") / "info.json"
 STATE, ACTION = "observation.state", "action"
+SLOWEST, FASTEST = 1e-3, 1e6  # [Hz] of cameras and robots
+EXACT = 2.0**53  # beyond which counters are no whole numbers any more
+COUNTED = ("timestamp", "frame_index", "episode_index")
 FEATURES = {
     "v": ("observation.velocity", "observation.velocities", "observation.qvel"),
     "tau": ("observation.effort", "observation.efforts", "observation.torque", "observation.torques"),
@@ -59,7 +62,7 @@ def open_lerobot(path: Path, where: str) -> LogSource:
     table = _table(path, features, where)
     kinds = _signals(table, features, where)
     joints, values = kinds
-    stamps, frames, episodes = (table[n] for n in ("timestamp", "frame_index", "episode_index"))
+    stamps, frames, episodes = (table[n] for n in COUNTED)
     time, told, recorded = _clock(stamps, frames, info.get("fps"))
     columns = {"time": time}
     for kind, array in values.items():
@@ -97,7 +100,7 @@ def _table(path: Path, features: dict[str, Any], where: str) -> dict[str, np.nda
     if not files:
         raise RecordingError("has no file data/*/*.parquet", where=where, next_step="download the data of the set")
     known = [name for names in FEATURES.values() for name in names if name in features]
-    wanted = ["timestamp", "frame_index", "episode_index", STATE, *([ACTION] if ACTION in features else []), *known]
+    wanted = [*COUNTED, STATE, *([ACTION] if ACTION in features else []), *known]
     parts = []
     for file in files:
         try:
@@ -108,8 +111,9 @@ def _table(path: Path, features: dict[str, Any], where: str) -> dict[str, np.nda
                 raise RecordingError(f"has no column {missing[0]}", where=str(file))
             refuse_if_huge(opened.metadata.num_rows * 8 * 64 * len(have) // 4, where)
             part = opened.read(columns=have, use_threads=False)
-            parts.append({name: _array(part.column(name), name, str(file)) for name in have})
-        except (pa.ArrowException, OSError) as error:
+            arrays = {name: _array(part.column(name), name, str(file)) for name in have}
+            parts.append({name: _shaped(values, name, str(file)) for name, values in arrays.items()})
+        except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
             said = (str(error).splitlines() or [""])[0][:100]
             raise RecordingError(f"is damaged ({said})", where=str(file), next_step="download it again") from None
     common = set.intersection(*(set(part) for part in parts))
@@ -118,8 +122,19 @@ def _table(path: Path, features: dict[str, Any], where: str) -> dict[str, np.nda
         if len(found) > 1:
             raise RecordingError(f"{name} has different numbers of joints in its files", where=where)
     table = {name: np.concatenate([part[name] for part in parts]) for name in wanted if name in common}
+    if not len(table[STATE]):
+        raise RecordingError("holds no samples", where=where, next_step="download the data of the set")
     order = np.lexsort((table["frame_index"], table["episode_index"]))
     return {name: values[order] for name, values in table.items()}
+
+
+def _shaped(values: np.ndarray, name: str, where: str) -> np.ndarray:
+    """One finite number a row for time and counters; shape (n, k) for features, which hold one number where k is 1."""
+    if name not in COUNTED:
+        return values[:, None] if values.ndim == 1 else values
+    if values.ndim != 1 or not (np.abs(values) < EXACT).all():
+        raise RecordingError(f"{name} does not hold one number a row", where=where, next_step="download it again")
+    return values
 
 
 def _array(column: pa.ChunkedArray, name: str, where: str) -> np.ndarray:
@@ -160,7 +175,7 @@ def _signals(
     table: dict[str, np.ndarray], features: dict[str, Any], where: str
 ) -> tuple[tuple[str, ...] | None, dict[str, np.ndarray]]:
     """Joint names, and per kind the values of shape (n, dof) in their order."""
-    state = np.atleast_2d(table[STATE])
+    state = table[STATE]
     names = _names(features[STATE], state.shape[1])
     parted = [_split(name) for name in names or [f"joint_{k}" for k in range(state.shape[1])]]
     joints = tuple(joint for joint, kind in parted if kind == "q")
@@ -176,7 +191,7 @@ def _signals(
             )
         if found is not None:
             values[kind] = found
-    if ACTION in table and table[ACTION].ndim == 2:
+    if ACTION in table:
         told = _names(features[ACTION], table[ACTION].shape[1])
         command = _aligned(table[ACTION], told, joints)
         if command is not None:
@@ -200,7 +215,7 @@ def _aligned(values: np.ndarray, names: tuple[str, ...] | None, joints: Sequence
 
 def _clock(stamps: np.ndarray, frames: np.ndarray, fps: Any) -> tuple[np.ndarray, tuple[str, ...], bool]:
     """Time [s], what to tell of it, and whether it was recorded."""
-    if not isinstance(fps, (int, float)) or not np.isfinite(fps) or fps <= 0:
+    if not isinstance(fps, (int, float)) or not SLOWEST <= fps <= FASTEST:
         return stamps, (), True
     made = frames / fps
     if np.max(np.abs(stamps - made)) > MADE + 1e-6 * np.max(np.abs(stamps)):

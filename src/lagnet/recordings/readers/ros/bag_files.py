@@ -60,7 +60,8 @@ class Bag:
         Raises:
             RecordingError: a damaged bag, or a message that does not fit its type.
         """
-        count, total = 0, sum(c.msgcount for s in self._storages for c in s.connections if c.msgtype in types)
+        told = [c.msgcount for s in self._storages for c in s.connections if c.msgtype in types]
+        count, total = 0, sum(n for n in told if isinstance(n, int))  # a damaged bag tells words
         for storage in self._storages:
             wanted = [c for c in storage.connections if c.msgtype in types]
             if not wanted:

@@ -1,0 +1,59 @@
+"""The command from its first moment to its last: Ctrl-C is one line, waits for modules, and hides no exit code."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lagnet import __main__ as entry
+
+LOADED = """import signal, time
+signal.raise_signal(signal.SIGINT)
+time.sleep(0.1)
+print("loaded", flush=True)
+"""
+
+
+@pytest.fixture(autouse=True)
+def handlers():
+    """Handlers of signals as they were before."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGALRM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_control_c_waits_while_a_module_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "pressed_while_loading.py").write_text(LOADED)
+    monkeypatch.syspath_prepend(tmp_path)
+    signal.signal(signal.SIGINT, entry.control_c)
+    signal.signal(signal.SIGALRM, entry.control_c)
+    with pytest.raises(KeyboardInterrupt):
+        import_and_wait()
+    assert sys.modules.pop("pressed_while_loading")
+
+
+def import_and_wait() -> None:
+    import pressed_while_loading  # noqa: F401  # pyright: ignore[reportMissingImports]
+
+    signal.pause()  # the question is put again here
+
+
+@pytest.mark.parametrize("pressed", ["raise KeyboardInterrupt", "exec('raise KeyboardInterrupt')"])
+def test_control_c_is_one_line_and_code_3(pressed: str) -> None:
+    code = f"import lagnet.cli.main as m\ndef pressed():\n    {pressed}\nm.main = pressed\n"
+    code += "import sys, lagnet.__main__ as entry\nsys.exit(entry.run())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (3, "lagnet: interrupted\n")
+
+
+def test_it_runs_the_command_line_and_ends_undisturbed() -> None:
+    code = "import signal, sys; sys.argv = ['lagnet', '--version']; from lagnet.__main__ import run; code = run();"
+    code += "signal.raise_signal(signal.SIGINT); sys.exit(code)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("lagnet ")
