@@ -45,6 +45,7 @@ class MotionProblem:
         speed: shape (n, dof), smoothed measured speed [rad/s].
         start_speed: shape (runs, dof), speed at the first sample of each run: zero, but for one that continues another.
         step: longest step of integration [s].
+        greatest_duty: shape (dof,), of all recordings, 1 for the full supply; nan where none was recorded.
     """
 
     joints: tuple[str, ...]
@@ -54,6 +55,7 @@ class MotionProblem:
     speed: np.ndarray
     start_speed: np.ndarray
     step: float
+    greatest_duty: np.ndarray
 
     @property
     def duration(self) -> float:
@@ -138,6 +140,12 @@ def pose_motion_problem(
     return MotionProblem(
         recordings[0].joints, tree, series, runs, rows["speed"], start, step, greatest_duty(recordings)
     )
+
+
+def greatest_duty(recordings: Sequence[Recording]) -> np.ndarray:
+    """max |duty| of every joint, shape (dof,); nan where a recording has none."""
+    found = [np.full(r.n_dof, np.nan) if r.duty is None else np.abs(r.duty).max(axis=0) for r in recordings]
+    return np.max(found, axis=0)
 
 
 def _before(recordings: Sequence[Recording], index: int, continued: int) -> Recording | None:
