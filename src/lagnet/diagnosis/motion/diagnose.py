@@ -14,7 +14,7 @@ from lagnet.diagnosis.motion.joint.cases import joint_case
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis, diagnose_joint
 from lagnet.diagnosis.motion.payload.judgement import judge_payload
-from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem
+from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem, start_speed
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.changed_bodies import Correction
@@ -94,7 +94,8 @@ def diagnose_motion(
     fit_on, held, factors = _divide(recordings, robot, holdout, gains)
     bodies, servo = _nominal(robot, servo)
     tree = kinematic_tree(bodies)
-    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on))
+    continued = 0 if holdout else len(held)
+    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued)
     limits = limits or SelectionLimits()
     joints = _diagnose_joints(problem, len(fit_on), servo, limits)
     apart = {i: d for i, d in enumerate(joints) if d is not None}
@@ -108,15 +109,13 @@ def diagnose_motion(
     laws = [_as_given(servo, i, nominal) for i, (nominal, _) in enumerate(pairs)]
     nominal = ServoDrivenModel(bodies, np.array(laws), scales, supply)
     corrected = ServoDrivenModel(loaded, np.array([law for _, law in pairs]), scales, supply)
+    named_laws = np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)])
+    named = ServoDrivenModel(loaded, named_laws, scales, supply)
     factors = factors or [1.0] * (len(fit_on) + len(held))
-    before, after = (
-        tuple(_roll(model, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
-        for model in (nominal, corrected)
+    starts = [(r, factors[len(fit_on) + i], fit_on[i] if continued else None) for i, r in enumerate(held)]
+    before, after, with_names = (
+        tuple(_roll(m, part, *start) for r, *start in starts for part in r.parts()) for m in (nominal, corrected, named)
     )
-    named = ServoDrivenModel(
-        loaded, np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)]), scales, supply
-    )
-    with_names = tuple(_roll(named, part, factors[len(fit_on) + i]) for i, r in enumerate(held) for part in r.parts())
     verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload)
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
 
@@ -204,6 +203,6 @@ def _gain_share(found: dict[int, JointDiagnosis], servo: NominalServo) -> float 
     return float(np.median(shares)) if shares else None
 
 
-def _roll(model: ServoDrivenModel, part: Recording, gain: float) -> np.ndarray:
-    signals = {"enabled": part.enabled, "voltage": part.voltage, "gain": gain}
+def _roll(model: ServoDrivenModel, part: Recording, gain: float, before: Recording | None) -> np.ndarray:
+    signals = {"enabled": part.enabled, "voltage": part.voltage, "gain": gain, "v0": start_speed(part, before)}
     return model.rollout(np.array(part.command), part.time, part.q[0], **signals)

@@ -43,7 +43,9 @@ class MotionProblem:
         series: command, position and load of each joint.
         runs: the trajectories, one after the other.
         speed: shape (n, dof), smoothed measured speed [rad/s].
+        start_speed: shape (runs, dof), speed at the first sample of each run: zero, but for one that continues another.
         step: longest step of integration [s].
+        greatest_duty: shape (dof,), of all recordings, 1 for the full supply; nan where none was recorded.
     """
 
     joints: tuple[str, ...]
@@ -51,12 +53,9 @@ class MotionProblem:
     series: tuple[JointSeries, ...]
     runs: tuple[Run, ...]
     speed: np.ndarray
+    start_speed: np.ndarray
     step: float
-
-    def whole(self) -> Windows:
-        """Every trajectory from its first sample on, at rest there."""
-        first = np.array([run.first for run in self.runs])
-        return Windows(first, np.array([run.last for run in self.runs]), first, np.zeros(len(first)))
+    greatest_duty: np.ndarray
 
     @property
     def duration(self) -> float:
@@ -76,7 +75,9 @@ class MotionProblem:
             edges = surest_edges(self.speed[run.first : run.last + 1, joint], count) + run.first
             rows += [(a, b, run.first) for a, b in pairwise(edges) if b > a]
         first, last, floor = (np.array(column) for column in zip(*rows, strict=True))
-        speed = np.where(first == floor, 0.0, self.speed[first, joint])
+        speed = self.speed[first, joint]
+        for run, begun in zip(self.runs, self.start_speed[:, joint], strict=True):
+            speed[first == run.first] = begun
         return Windows(first, last, floor, speed)
 
 
@@ -103,7 +104,11 @@ def surest_edges(speed: np.ndarray, count: int) -> np.ndarray:
 
 
 def pose_motion_problem(
-    recordings: Sequence[Recording], tree: KinematicTree, gains: Sequence[float] | None = None, voltage: float = 0.0
+    recordings: Sequence[Recording],
+    tree: KinematicTree,
+    gains: Sequence[float] | None = None,
+    voltage: float = 0.0,
+    continued: int = 0,
 ) -> MotionProblem:
     """Commands, motion and nominal loads of recordings, joint by joint.
 
@@ -112,6 +117,7 @@ def pose_motion_problem(
         tree: the nominal bodies.
         gains: gains of the controller in each recording over those of the law, 1 where None.
         voltage: nominal supply [V]; 0: the median of what was recorded.
+        continued: so many recordings at the end may be the last stretches of as many at the beginning.
 
     Raises:
         DiagnosisError: a recording without commands, or with fewer than ten samples in every trajectory.
@@ -129,8 +135,38 @@ def pose_motion_problem(
         JointSeries(*(np.ascontiguousarray(rows[n] if n == "time" else rows[n][:, j]) for n in names))
         for j in range(parts[0][1].n_dof)
     )
+    start = np.array([start_speed(part, _before(recordings, i, continued)) for i, part in parts])
     step = float(np.clip(np.median(np.diff(parts[0][1].time)), 0.001, 0.005))
-    return MotionProblem(recordings[0].joints, tree, series, runs, rows["speed"], step)
+    return MotionProblem(
+        recordings[0].joints, tree, series, runs, rows["speed"], start, step, greatest_duty(recordings)
+    )
+
+
+def greatest_duty(recordings: Sequence[Recording]) -> np.ndarray:
+    """max |duty| of every joint, shape (dof,); nan where a recording has none."""
+    found = [np.full(r.n_dof, np.nan) if r.duty is None else np.abs(r.duty).max(axis=0) for r in recordings]
+    return np.max(found, axis=0)
+
+
+def _before(recordings: Sequence[Recording], index: int, continued: int) -> Recording | None:
+    """The recording that one of the last `continued` may continue."""
+    first = len(recordings) - continued
+    return recordings[index - first] if continued and index >= first else None
+
+
+def start_speed(part: Recording, before: Recording | None) -> np.ndarray:
+    """v at the first sample, shape (dof,): zero, but where the samples of another recording end just before it.
+
+    A motion that is cut in two goes on at the cut; smoothed over both sides, its speed is known there.
+    """
+    gap = np.inf if before is None else float(part.time[0] - before.time[-1])
+    sample = float(np.median(np.diff(part.time)))
+    if before is None or not 0.0 < gap < 2.0 * sample:
+        return np.zeros(part.n_dof)
+    count = max(5, round(SMOOTHING / sample))
+    time = np.concatenate([before.time[-count:], part.time[:count]])
+    q = np.concatenate([before.q[-count:], part.q[:count]])
+    return motion_rates(time, q)[0][min(count, len(before))]
 
 
 def median_voltage(recordings: Sequence[Recording]) -> float:

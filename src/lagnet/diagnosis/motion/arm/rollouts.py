@@ -39,7 +39,7 @@ class ArmRuns:
             body: shape (10,), inertial parameters added to the last link.
         """
         series, bodies = self.problem.series, self.problem.tree.bodies.copy()
-        begun = {run.first for run in self.problem.runs}
+        begun = {run.first: v for run, v in zip(self.problem.runs, self.problem.start_speed, strict=True)}
         if body is not None:
             bodies[-1] += body
         tree, out = replace(self.problem.tree, bodies=bodies), []
@@ -49,7 +49,7 @@ class ArmRuns:
                 np.column_stack([getattr(s, name)[rows] for s in series])
                 for name in ("command", "q", "ratio", "gain", "enabled")
             )
-            v0 = np.zeros(q.shape[1]) if run.first in begun else self.problem.speed[run.first]
+            v0 = begun.get(run.first, self.problem.speed[run.first])
             signals = {"v0": v0, "ratio": ratio, "gain": gain, "enabled": enabled, "step": STEP}
             out.append(roll_out_arm(tree, laws, series[0].time[rows], command, q[0], **signals) - q)
         return [np.concatenate([e[:, j] for e in out]) for j in self.joints]

@@ -14,7 +14,13 @@ SHORTEST = 0.25  # [s] of a block
 GREATEST_ODDS = 99.0  # powers of ten that are told
 
 
-def block_scores(data: JointData, law: np.ndarray, floor: float) -> np.ndarray:
+def block_length(*parts: JointData) -> float:
+    """Length of the blocks of some data [s]: `BLOCKS` of them, but of `SHORTEST` to `LONGEST` seconds."""
+    total = sum(float(np.sum(d.series.time[d.windows.last] - d.series.time[d.windows.first])) for d in parts)
+    return float(np.clip(total / BLOCKS, SHORTEST, LONGEST))
+
+
+def block_scores(data: JointData, law: np.ndarray, floor: float, length: float | None = None) -> np.ndarray:
     """½ log(mean e² + floor²) of the error e in each block, shape (n_blocks,); smaller is better.
 
     It is the negative log-likelihood of errors whose variance differs from block to block, up to a constant: a contact
@@ -24,10 +30,10 @@ def block_scores(data: JointData, law: np.ndarray, floor: float) -> np.ndarray:
         data: windows that were not fitted.
         law: shape (len(LAW),).
         floor: resolution of the error [rad].
+        length: of a block [s]; None: that of these data alone.
     """
     squares, out, time = data.errors(law) ** 2, [], data.series.time
-    total = float(np.sum(time[data.windows.last] - time[data.windows.first]))
-    length = float(np.clip(total / BLOCKS, SHORTEST, LONGEST))
+    length = length or block_length(data)
     for first, last in zip(data.windows.first, data.windows.last, strict=True):
         count = max(1, round(float(time[last] - time[first]) / length))
         out += [part.mean() for part in np.array_split(squares[first : last + 1], count)]

@@ -16,8 +16,11 @@ from lagnet.servos.effect import Scales
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
 
+FULL_DUTY = 0.98  # recorded duty below which the controller's torque was not limited
 LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
+ENOUGH = 20.0  # [s] of motion for validation, below which every window is for validation once
 EVERY = 4  # one window in so many of the fitted recordings is for validation
+FIRST_FOLD = 2  # its windows are 2, 6, 10 ...
 LONG = 10.0  # [s] of a rollout to which the complete law is fitted
 SAMPLES = 8000  # that a search uses; the last fit uses all
 ESTIMATED: tuple[tuple[str, ...], ...] = (("kp",), ("viscous",))  # free from the start where no servo is given
@@ -41,7 +44,6 @@ def joint_case(
         reference: kp of a servo without a nominal law where no load determines it [N m/rad].
     """
     series, speed = problem.series[joint], problem.speed[:, joint]
-    to_fit, to_validate = _divided(problem, fitted, joint)
     resolution = encoder_step(series.q)
     moving = (np.abs(speed) > 3.0 * resolution / 0.1 + 1e-4) & _inside(problem, fitted)
     start = _first(problem, joint, moving, servo, reference)
@@ -51,14 +53,15 @@ def joint_case(
     excited = tuple(n for n, e in SERVO_CATALOGUE.items() if e.excitation(series.command, series.q, moving) is None)
     if not known:
         excited = tuple(n for n in excited if n not in ("gain_error", "viscous_friction"))
+    if problem.greatest_duty[joint] < FULL_DUTY:
+        excited = tuple(n for n in excited if n != "duty_saturation")
     base = () if known else (ESTIMATED if start.scale_is_set else ESTIMATED[1:])
     if base and np.ptp(series.enabled) > 0.0:  # friction alone acts while the drive is off
         base = (*base, ("back_emf",))
     floor = max(0.5 * resolution, LEAST_ERROR)
-    quick = min(problem.step, 0.004)
-    data, validation = (JointData(series, _thinned(w, series, SAMPLES), quick) for w in (to_fit, to_validate))
-    scales = _scales(series, speed, moving, law, start)
-    return JointCase(data, validation, law, start.law, start.scale_is_set, base, scales, floor, excited, limits)
+    (data, validation), *folds = _folds(problem, fitted, joint, min(problem.step, 0.004))
+    scales, scale_is_set = _scales(series, speed, moving, law, start), start.scale_is_set
+    return JointCase(data, validation, law, start.law, scale_is_set, base, scales, floor, excited, limits, tuple(folds))
 
 
 def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
@@ -69,27 +72,44 @@ def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:
     return inside
 
 
-def _divided(problem: MotionProblem, fitted: int, joint: int, length: float | None = None) -> tuple[Windows, Windows]:
+def _divided(
+    problem: MotionProblem, fitted: int, joint: int, length: float | None = None, fold: int = FIRST_FOLD
+) -> tuple[Windows, Windows]:
     """Windows to fit, and windows for validation: long ones of all that is held out, and every fourth of the others.
 
-    Effects of rest and of stops show where the state comes from a rollout and not from a measurement nearby.
+    Effects of rest and of stops show where the state comes from a rollout and not from a measurement nearby. What is
+    held out is in the first fold, that of the windows 2, 6, 10 ...
     """
-    windows, inside = problem.windows(joint, length), _inside(problem, fitted)
-    of_fit = _pick(windows, np.flatnonzero(inside[windows.first]))
-    long = problem.windows(joint, LONG)
-    held = _pick(long, np.flatnonzero(~inside[long.first]))
+    of_fit, inside = windows_to_fit(problem, fitted, joint, length), _inside(problem, fitted)
     seen = np.zeros(len(of_fit.first), dtype=bool)
-    seen[2::EVERY] = True
-    return _pick(of_fit, np.flatnonzero(~seen)), _joined(held, _pick(of_fit, np.flatnonzero(seen)))
+    seen[fold::EVERY] = True
+    to_fit, to_validate = (_pick(of_fit, np.flatnonzero(mask)) for mask in (~seen, seen))
+    if fold != FIRST_FOLD:
+        return to_fit, to_validate
+    long = problem.windows(joint, LONG)
+    return to_fit, _joined(_pick(long, np.flatnonzero(~inside[long.first])), to_validate)
+
+
+def _folds(
+    problem: MotionProblem, fitted: int, joint: int, step: float, length: float | None = None
+) -> list[tuple[JointData, JointData]]:
+    """Pairs of data to fit and for validation: one where that is enough for validation, else one for each fold."""
+    series = problem.series[joint]
+    parts = [_divided(problem, fitted, joint, length)]
+    if _duration(parts[0][1], series) < ENOUGH:
+        parts += [_divided(problem, fitted, joint, length, fold) for fold in range(EVERY) if fold != FIRST_FOLD]
+    pairs = [tuple(JointData(series, _thinned(w, series, SAMPLES), step) for w in part) for part in parts]
+    return [(fit, seen) for fit, seen in pairs if len(seen.windows.first) and len(fit.windows.first)]
+
+
+def _duration(windows: Windows, series: JointSeries) -> float:
+    return float(np.sum(series.time[windows.last] - series.time[windows.first]))
 
 
 def with_long_windows(case: JointCase, problem: MotionProblem, fitted: int, joint: int) -> JointCase:
     """The case with windows of `LONG` seconds, in which errors of rest positions have time to add up."""
-    series, step = case.fit.series, case.fit.step
-    fit, validation = (
-        JointData(series, _thinned(w, series, SAMPLES), step) for w in _divided(problem, fitted, joint, LONG)
-    )
-    return replace(case, fit=fit, validation=validation)
+    (fit, validation), *folds = _folds(problem, fitted, joint, case.fit.step, LONG)
+    return replace(case, fit=fit, validation=validation, folds=tuple(folds))
 
 
 def windows_to_fit(problem: MotionProblem, fitted: int, joint: int, length: float | None = None) -> Windows:

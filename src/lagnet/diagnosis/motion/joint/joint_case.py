@@ -40,6 +40,7 @@ class JointCase:
 
     Args:
         fit, validation: disjoint windows of the motion.
+        folds: further pairs of them, so that every window is for validation once; none where there is enough motion.
         law: the nominal law.
         start: the law of the equation error, with every plain effect in it.
         scale_is_set: whether loads determine the scale of torques; else torques are known as ratios to kp.
@@ -59,6 +60,7 @@ class JointCase:
     floor: float
     excited: tuple[str, ...]
     limits: SelectionLimits = field(default_factory=SelectionLimits)
+    folds: tuple[tuple[JointData, JointData], ...] = ()
 
 
 def sizes_of(scales: Scales) -> dict[str, float]:

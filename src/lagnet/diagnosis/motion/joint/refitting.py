@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.joint.block_scores import block_scores
+from lagnet.diagnosis.motion.joint.block_scores import block_length, block_scores
 from lagnet.diagnosis.motion.joint.fitting import Fitted, fit_law, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.parameters import KP, NAMES
 
 FULL = 12  # iterations
+FOLD = 4  # iterations in another fold, from the law of the first
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +24,7 @@ class Selection:
     Args:
         effects: names of the catalogue.
         fitted: the law.
-        blocks: shape (n_blocks,), scores on validation windows.
+        blocks: shape (n_blocks,), scores on validation windows, those of every fold by the law fitted to the others.
     """
 
     effects: tuple[str, ...]
@@ -44,9 +45,10 @@ def groups_of(case: JointCase, effects: Sequence[str]) -> list[tuple[str, ...]]:
     taken: set[str] = set()
     out = []
     for group in sorted(dict.fromkeys(groups), key=len):  # one parameter for itself before one that shares
-        if not taken & set(group):
-            out.append(group)
-            taken |= set(group)
+        left = tuple(p for p in group if p not in taken)
+        if left:
+            out.append(left)
+            taken |= set(left)
     return out
 
 
@@ -62,7 +64,12 @@ def refit(case: JointCase, effects: Sequence[str], law: np.ndarray, scale: float
     """
     coordinates = free_coordinates(groups_of(case, effects), law, sizes_of(case.scales))
     fitted = fit_law(case.fit, law, coordinates, scale=scale, iterations=iterations)
-    return Selection(tuple(effects), fitted, block_scores(case.validation, fitted.law, case.floor))
+    length = block_length(case.validation, *(validation for _, validation in case.folds))
+    blocks = [block_scores(case.validation, fitted.law, case.floor, length)]
+    for fit, validation in case.folds:
+        other = fit_law(fit, fitted.law, coordinates, scale=scale, iterations=FOLD)
+        blocks.append(block_scores(validation, other.law, case.floor, length))
+    return Selection(tuple(effects), fitted, np.concatenate(blocks))
 
 
 def starts_with(case: JointCase, selected: Selection, name: str) -> list[np.ndarray]:
