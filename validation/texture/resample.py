@@ -12,6 +12,7 @@ from validation.texture.remainders import RATE, Remainder, usual
 BLOCK = 50  # samples: half a second
 FADE = 5  # samples over which neighbouring blocks pass into each other
 EVERY = 10  # samples between blocks that may be chosen
+SLOW = 0.02  # of the largest usual speed: below it the sign of the velocity is blurred
 NEAREST = 5  # blocks of the most similar motion, of which one is drawn
 
 
@@ -67,7 +68,20 @@ def lay(texture: Texture, q: np.ndarray, torque: np.ndarray, seed: int) -> np.nd
         remainder, start = starts[int(rng.choice(near))]
         block = remainder.torque[start : start + rows.stop - rows.start][:, joints]
         out[rows] += block * _fade(rows, first, len(q))[:, None]
-    return texture.scale * out * np.sqrt(np.mean(torque**2, axis=0))
+    return texture.scale * without_listed_laws(out, here, torque) * np.sqrt(np.mean(torque**2, axis=0))
+
+
+def without_listed_laws(texture: np.ndarray, signals: np.ndarray, torque: np.ndarray) -> np.ndarray:
+    """The texture less its part along an offset, friction, a rotor and a gain of each joint, shape (n, dof).
+
+    A real arm differs from run to run by these; claims of them would be right, and the envelope does not hold them.
+    """
+    out, n_dof = np.empty_like(texture), texture.shape[1]
+    for j in range(n_dof):
+        v, a = signals[:, j], signals[:, n_dof + j]
+        laws = np.column_stack([np.ones(len(v)), np.tanh(v / SLOW), v, v * np.abs(v), a, torque[:, j]])
+        out[:, j] = texture[:, j] - laws @ np.linalg.lstsq(laws, texture[:, j], rcond=None)[0]
+    return out
 
 
 def _pool(texture: Texture) -> tuple[np.ndarray, list[tuple[Remainder, int]]]:

@@ -68,9 +68,9 @@ def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comp
 def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -> float:
     """log10 odds of a joint's selection over another: of their errors in blocks, and of their complexity."""
     system = view.system
-    errors = [held_out_errors(system.blocks, system.folds, system.columns(s))[None] for s in (own, other)]
+    here, there = (held_out_errors(system.blocks, system.folds, system.columns(s))[None] for s in (own, other))
     simpler = sum(view.equations.penalties[list(other)]) - sum(view.equations.penalties[list(own)])
-    return log10_odds([view.pieces], *errors, [view.least_error]) + float(simpler) / LN10
+    return log10_odds([view.pieces], here, there, [view.least_error]) + float(simpler) / LN10
 
 
 def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
@@ -141,11 +141,11 @@ def _arm_wide_odds(equations: NormalEquations, found: Selection, others: tuple[i
     """log10 odds of the selection over one with other arm-wide hypotheses beside the same local ones."""
     chosen = (*others, *(i for own in found.local for i in own))
     sigma = found.sigma(equations)
-    errors = [unseen_block_errors(equations, s, sigma) for s in (found.indices, chosen)]
+    here, there = (unseen_block_errors(equations, s, sigma) for s in (found.indices, chosen))
     penalties = [float(equations.penalties[list(s)].sum()) for s in (found.indices, chosen)]
     pieces = equations.samples / found.scales.inefficiency
     floors = np.maximum(1e-3 * found.scales.noise_power, 1e-12 * found.scales.torque_power)
-    return log10_odds(pieces, *errors, floors) + (penalties[1] - penalties[0]) / LN10
+    return log10_odds(pieces, here, there, floors) + (penalties[1] - penalties[0]) / LN10
 
 
 def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:

@@ -114,7 +114,8 @@ def diagnose_motion(
     factors = factors or [1.0] * (len(fit_on) + len(held))
     starts = [(r, factors[len(fit_on) + i], fit_on[i] if continued else None) for i, r in enumerate(held)]
     before, after, with_names = (
-        tuple(_roll(m, part, *start) for r, *start in starts for part in r.parts()) for m in (nominal, corrected, named)
+        tuple(_roll(m, part, gain, run) for r, gain, run in starts for part in r.parts())
+        for m in (nominal, corrected, named)
     )
     verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload)
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
