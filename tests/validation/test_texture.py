@@ -14,7 +14,7 @@ N, DOF = 3000, 3
 def motion(seed: int, n: int = N) -> np.ndarray:
     time, rng = np.arange(n) / RATE, np.random.default_rng(seed)
     phases = rng.uniform(0.0, 6.0, (4, DOF))
-    return sum(np.sin((0.5 + 0.4 * k) * time[:, None] + phases[k]) for k in range(4))
+    return np.sum([np.sin((0.5 + 0.4 * k) * time[:, None] + phases[k]) for k in range(4)], axis=0)
 
 
 def speed(q: np.ndarray) -> np.ndarray:

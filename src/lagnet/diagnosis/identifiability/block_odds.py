@@ -11,9 +11,8 @@ many samples is surer than the recordings are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.stats import t as student
 
 from lagnet.diagnosis.regression.cross_validation import RIDGE
@@ -41,7 +40,7 @@ def held_out_errors(blocks: np.ndarray, folds: np.ndarray, columns: np.ndarray) 
     return np.maximum(np.einsum("bi,bij,bj->b", each, inside, each), 0.0)
 
 
-def log10_odds(pieces: Sequence[float], here: np.ndarray, there: np.ndarray, floors: Sequence[float]) -> float:
+def log10_odds(pieces: ArrayLike, here: np.ndarray, there: np.ndarray, floors: ArrayLike) -> float:
     """log10 odds of the selection with errors `here` over the one with errors `there`.
 
     Args:
