@@ -21,8 +21,9 @@ from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of, without
-from lagnet.diagnosis.motion.joint.selection import NEAR_NOMINAL, Rejected, relative_change
+from lagnet.diagnosis.motion.joint.selection import NEAR_NOMINAL, WITHIN_INTERVAL, Rejected, relative_change
 from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.servos.parameters import INDEX
 
 ITERATIONS = 6  # in each round: a fit joint by joint is near
 
@@ -97,7 +98,11 @@ def fit_named_laws(
     while nominal := {j: near for j, d in out.items() if (near := _near_nominal(d))}:
         out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
-    return _with_intervals(problem, fitted, laws, out)
+    out = _with_intervals(problem, fitted, laws, out)
+    if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
+        return out
+    out = {j: _without(d, open_.get(j, ())) for j, d in out.items()}
+    return _with_intervals(problem, fitted, laws, _refitted(problem, fitted, laws, out))
 
 
 def _arm_of(
@@ -156,6 +161,27 @@ def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
     limit = found.case.limits.change
     changes = {e: relative_change(found.case.law, found.named_law, e) for e in found.named.effects}
     return tuple(Rejected(e, NEAR_NOMINAL, change, limit) for e, change in changes.items() if change < limit)
+
+
+def _undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo none of whose 95 % intervals leaves out the nominal value: their size is not known.
+
+    A joint by itself may prefer such an effect; beside the other joints its size is open, or stands at a bound.
+    """
+    if found.case.base:
+        return ()
+    sizes = {e: _half_widths_away(found, e) for e in found.named.effects}
+    return tuple(Rejected(e, WITHIN_INTERVAL, size, 1.0) for e, size in sizes.items() if size <= 1.0)
+
+
+def _half_widths_away(found: JointDiagnosis, effect: str) -> float:
+    """max |p − p₀| over the half-width of p's interval, of all parameters of an effect; infinite without intervals."""
+    away = [np.inf] if not (names := [g[0] for g in groups_of(found.case, (effect,))]) else []
+    for name in names:
+        low, high = found.intervals.get(name, (np.nan, np.nan))
+        size = abs(found.named_law[INDEX[name]] - found.case.law[INDEX[name]]) / max(0.5 * (high - low), 1e-12)
+        away.append(size if np.isfinite(size) else np.inf)
+    return float(max(away))
 
 
 def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiagnosis:

@@ -21,6 +21,7 @@ from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
+WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
 NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
     "gain_error",
