@@ -101,8 +101,8 @@ def fit_named_laws(
     out = _with_intervals(problem, fitted, laws, out)
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
-    out = {j: replace(_without(d, open_.get(j, ())), law=d.law) for j, d in out.items()}  # only the name goes
-    return _with_intervals(problem, fitted, laws, _refitted(problem, fitted, laws, out))
+    out = {j: replace(_without(d, open_[j]), law=d.law) if j in open_ else d for j, d in out.items()}  # names alone go
+    return _with_intervals(problem, fitted, laws, out)
 
 
 def _arm_of(
