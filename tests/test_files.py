@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -93,7 +94,28 @@ def test_an_error_names_the_place_and_not_the_draft(tmp_path, monkeypatch, write
     assert told.value.filename == str(tmp_path / "found" / "verdict.json")
 
 
-def test_control_c_waits_until_all_have_taken_their_places(results, monkeypatch) -> None:
+@pytest.fixture
+def control_c() -> Iterator[Callable]:
+    """Sets who takes Ctrl-C; a process in the background ignores it from its start."""
+    before = signal.getsignal(signal.SIGINT)
+    yield lambda handler: signal.signal(signal.SIGINT, handler)
+    signal.signal(signal.SIGINT, before)
+
+
+def test_control_c_that_is_ignored_stays_ignored(results, control_c) -> None:
+    control_c(signal.SIG_IGN)
+
+    def fill(draft) -> None:
+        write_whole(draft / "a.txt", "new")
+        signal.raise_signal(signal.SIGINT)
+
+    write_together(results, fill, last="a.txt")
+    assert standing(results)["a.txt"] == "new"
+    assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+def test_control_c_waits_until_all_have_taken_their_places(results, monkeypatch, control_c) -> None:
+    control_c(signal.default_int_handler)
     replace, moved = os.replace, []
 
     def pressed(source, target) -> None:

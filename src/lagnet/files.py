@@ -141,7 +141,7 @@ def _named_in(made: Path, folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _control_c_waits() -> Iterator[None]:
-    """Ctrl-C takes effect at the end of the block; only the main thread can have it wait."""
+    """Ctrl-C takes effect at the end of the block, if it has any; only the main thread can have it wait."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -152,7 +152,7 @@ def _control_c_waits() -> Iterator[None]:
     finally:
         signal.signal(signal.SIGINT, before)
     if came:
-        raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)  # to whom it was meant for: nobody, where it is ignored
 
 
 def _exchange(made: Path, folder: Path) -> None:
