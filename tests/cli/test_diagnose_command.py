@@ -16,6 +16,8 @@ import lagnet
 from lagnet.cli.main import main
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 
+pytestmark = pytest.mark.xdist_group("diagnose_command")  # what they share is made once
+
 RATE = 100.0  # [Hz]
 ARM = {"n_joints": 2, "seed": 4, "kinds": ("revolute",)}
 

@@ -13,6 +13,8 @@ from lagnet.models.lagrangians.perceptron_delan import PerceptronDelanSettings
 from lagnet.models.learned_model import CHUNK, LearnedModel
 from lagnet.models.scales import fit_scales
 
+pytestmark = pytest.mark.xdist_group("learned_calls")  # what they share is made once
+
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 SINGLE = 1e-5  # of the largest torque: float32 rounding of the same
 

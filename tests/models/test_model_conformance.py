@@ -18,6 +18,8 @@ from lagnet.models.residuals.torque_network import TorqueNetworkSettings
 from lagnet.models.scales import fit_scales
 from lagnet.types import InverseDynamics
 
+pytestmark = pytest.mark.xdist_group("model_conformance")  # what they share is made once
+
 IDENTITY = 1e-9  # float64 rounding of about a thousand operations on numbers of order 1 to 100
 AUTODIFF = 1e-5  # central differences at step 1e-6: truncation plus rounding
 TYPES = ("continuous", "prismatic", "revolute")

@@ -37,6 +37,7 @@ def test_structured_network_is_mechanics_but_untrained_it_is_another_arm(delan: 
     assert all(name.startswith("reference_") for name in failed), report.headline()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("friction", "passes"), [(0.5, True), (-0.5, False)])
 def test_corrected_model_is_judged_with_its_effects(friction: float, passes: bool):
     arm = random_arm(2, 3, ("revolute",))

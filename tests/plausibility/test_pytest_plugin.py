@@ -65,6 +65,7 @@ def test_model_of_the_command_line_is_one_test_a_check(tmp_path: Path):
     assert told["reference_total"]["lagnet_status"] == "pass"
 
 
+@pytest.mark.slow
 def test_vertical_base_is_checked_where_asked_for(tmp_path: Path):
     for asked, status in (((), "not_applicable"), (("--lagnet-vertical-base",), "pass")):
         done = run(tmp_path, "--lagnet-model", "ur5", *asked, "-k", "base_angle", "--junitxml=out.xml")

@@ -18,7 +18,10 @@ from lagnet.tracking.fleet_pages import fleet_of
 from lagnet.tracking.tables import read_track
 from lagnet.tracking.track import track
 
-pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
+    pytest.mark.xdist_group("track"),  # what they share is made once
+]
 ROBOTS, RECORDINGS = 2, 5
 
 

@@ -46,6 +46,7 @@ def test_the_tilt_is_named_and_the_friction_behind_it(place, plant, arm, at, nam
     np.testing.assert_allclose(result.corrected.bodies().gravity, real.robot.gravity, atol=0.06)
 
 
+@pytest.mark.slow
 def test_a_payload_on_a_wall_is_found_too(plant, arm, names) -> None:
     real = plant(robot=mounted(arm, "wall").with_payload(1.5, np.array([0.05, 0.08, 0.15]), 0.006 * np.eye(3)))
     result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])

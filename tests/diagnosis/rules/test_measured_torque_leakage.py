@@ -28,6 +28,7 @@ def test_one_joint_that_moves_alone_and_lacks_nothing_gets_no_name(plant, ur10, 
     assert result.effects == ()
 
 
+@pytest.mark.slow
 def test_the_noise_would_have_been_named_otherwise(plant, ur10) -> None:
     """Shows that the test above can fail: without the rule, the second derivative of the noise is taken for bending."""
     others = [r for r in RULES if r.name != MeasuredTorqueLeakage.name]

@@ -13,6 +13,8 @@ from lagnet.models.corrected.model import NamedEffect
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.recording import Recording
 
+pytestmark = pytest.mark.xdist_group("transients")  # what they share is made once
+
 FORCE, POINT = np.array([6.0, -9.0, 12.0]), np.array([0.02, -0.05, 0.08])
 START, END = 9.004, 13.006  # [s], between two samples of the recording
 SAMPLE = 0.01  # [s] between two samples

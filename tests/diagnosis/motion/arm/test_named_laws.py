@@ -77,6 +77,7 @@ def test_an_effect_whose_interval_holds_the_nominal_value_is_not_known():
     assert _undetermined(found) == ()
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_values_behind_an_encoder(tmp_path):
     arm, floors = arm_of(posed(tmp_path, ENCODER)), np.full(2, 0.5 * ENCODER)
     values = fit_values(arm.errors, arm.sensitivities, arm.read(), arm.sizes, floors, nearest=arm.nearest)
@@ -107,6 +108,7 @@ def test_slopes_at_a_bound_are_taken_inwards(tmp_path):
     assert np.array_equal(arm.nearest(values), values)
 
 
+@pytest.mark.slow
 def test_long_recordings_are_fitted_in_pieces_from_all_parts(tmp_path):
     problem = posed(tmp_path, ENCODER, 400.0)
     pieces = runs_to_fit(problem, 1)
