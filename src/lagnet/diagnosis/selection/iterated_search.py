@@ -32,19 +32,22 @@ LEFT = 2.0  # times the noise power: a joint with a smaller residual needs no fu
 def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquations, Selection]:
     """The best selection, its normal equations, and the problem with the bodies that its columns follow from.
 
+    Rounds need not settle where something is of no law's form: the best of them counts, the later of equals.
+
     Args:
         problem: just posed.
         noise: shape (dof,), noise floor [N m].
     """
     problem = replace(problem, known=mounting_of(problem))
-    equations, found = _search_once(problem, noise)
+    rounds = [(problem, *_search_once(problem, noise))]
     for _ in range(ROUNDS):
+        problem, equations, found = rounds[-1]
         known = _known(equations.library, found)
         if not _is_news(problem, known, found.fit.sse > LEFT * equations.samples * noise**2):
             break
-        problem, last = replace(problem, known=known), (equations.library, found)
-        equations, found = _search_once(problem, noise, last)
-    return problem, equations, found
+        problem = replace(problem, known=known)
+        rounds.append((problem, *_search_once(problem, noise, (equations.library, found))))
+    return max(reversed(rounds), key=lambda r: r[2].score)
 
 
 def _search_once(
