@@ -65,6 +65,21 @@ def arm_error_where_fitted(old: Callable) -> Callable:
     return error
 
 
+def arm_theta_where_fitted(old: Callable) -> Callable:
+    """Coefficients of the fit to all blocks in the place of those without a fold."""
+
+    def theta(equations: NormalEquations, order: Any, where: dict, sigma: np.ndarray) -> np.ndarray:
+        fit: Fit = fit_selection(equations, order, sigma, folds=False)
+        return np.concatenate([fit.coefficients[i] for i in order])[None]
+
+    return theta
+
+
+def block_errors_where_fitted(old: Callable) -> Callable:
+    """Errors in blocks of the fit to all of them: two folds, each of everything, of which one is left out."""
+    return lambda blocks, folds, columns: old(blocks, np.stack([folds.sum(axis=0)] * 2), columns)
+
+
 def white(old: Callable) -> Callable:
     """Covariance of a fit whose residuals are independent from sample to sample, and their number."""
 

@@ -64,6 +64,8 @@ WITHOUT_STEP = (
         instead={
             "lagnet.diagnosis.regression.joint_system:BorderedSystems": neutral.error_where_fitted,
             "lagnet.diagnosis.regression.cross_validation:_unseen_error": neutral.arm_error_where_fitted,
+            "lagnet.diagnosis.regression.cross_validation:_theta_without_folds": neutral.arm_theta_where_fitted,
+            "lagnet.diagnosis.identifiability.rivals:held_out_errors": neutral.block_errors_where_fitted,
         },
     ),
     Ablation(
