@@ -52,8 +52,8 @@ class History:
         Raises:
             TypeError: these are none.
         """
-        shares = ("train", "held_out")
-        return History([Report(**{n: tuple(x) if n in shares else x for n, x in v.items()}) for v in values])
+        reports = [Report(**value) for value in values]
+        return History([replace(r, train=tuple(r.train), held_out=tuple(r.held_out)) for r in reports])
 
     def followed_by(self, later: History) -> History:
         """This training and one that went on from its result, counted through."""
