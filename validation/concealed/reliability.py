@@ -10,7 +10,6 @@ from pathlib import Path
 from validation.concealed.scoring import Score
 
 EDGES = (float("-inf"), -1.3, 0.0, 1.0, 2.0, 4.0, 8.0, 16.0, float("inf"))  # log10 of the odds
-ASKED = {(1.0, 2.0): (0.85, 0.99), (2.0, 4.0): (0.95, 1.0), (4.0, 8.0): (0.98, 1.0)}  # share right: least, most
 
 
 def odds_of(out: Path, scores: Sequence[Score]) -> list[tuple[float, str, str]]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import t as student
 
-from lagnet.diagnosis.regression.cross_validation import RIDGE
+from lagnet.diagnosis.regression.cross_validation import RIDGE, errors_in_blocks
 from lagnet.diagnosis.regression.normal_equations import ridge_solve
 
 GREATEST = 99.0  # powers of ten that are told
@@ -30,14 +30,11 @@ def held_out_errors(blocks: np.ndarray, folds: np.ndarray, columns: np.ndarray) 
         folds: shape (n_folds, K + 1, K + 1), their sums by fold.
         columns: shape (k,), of the selection.
     """
-    own = np.append(columns, blocks.shape[-1] - 1)
-    inside, groups = blocks[:, own[:, None], own], folds[:, own[:, None], own]
-    theta = np.ones((len(folds), own.size))
+    theta = np.zeros((len(folds), columns.size))
     if columns.size:
-        rest = groups.sum(axis=0) - groups
-        theta[:, :-1] = -ridge_solve(rest[:, :-1, :-1], rest[:, :-1, -1], RIDGE)
-    each = theta[np.arange(len(blocks)) % len(folds)]
-    return np.maximum(np.einsum("bi,bij,bj->b", each, inside, each), 0.0)
+        rest = (folds.sum(axis=0) - folds)[:, :, np.append(columns, -1)][:, columns]
+        theta = ridge_solve(rest[..., :-1], rest[..., -1], RIDGE)
+    return errors_in_blocks(blocks, columns, theta)
 
 
 def log10_odds(pieces: ArrayLike, here: np.ndarray, there: np.ndarray, floors: ArrayLike) -> float:

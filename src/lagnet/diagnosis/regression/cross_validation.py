@@ -117,14 +117,18 @@ class Fit:
 def fit_selection(equations: NormalEquations, selection: Sequence[int], sigma: np.ndarray, folds: bool = True) -> Fit:
     """Fits all selected hypotheses at once, joints weighted by 1/σ², and judges each fold by a fit without it."""
     order = tuple(selection)
-    widths = [equations.library.widths[i] for i in order]
-    starts = np.concatenate([[0], np.cumsum(widths)]).astype(int)
-    where = {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(order)}
+    where = _places(equations, order)
     gram, moment = assemble(equations, order, where, sigma, [t[None] for t in equations.total])
     theta = ridge_solve(gram[0], moment[0], RIDGE) if order else np.zeros(0)
     coefficients = {i: theta[where[i]] for i in order}
     sse = _unseen_error(equations, order, where, sigma) if folds else np.zeros(equations.library.n_dof)
     return Fit(order, coefficients, sse)
+
+
+def _places(equations: NormalEquations, order: Sequence[int]) -> dict[int, np.ndarray]:
+    """Rows of the coefficients of each hypothesis where all stand one after the other."""
+    starts = np.concatenate([[0], np.cumsum([equations.library.widths[i] for i in order])]).astype(int)
+    return {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(order)}
 
 
 def assemble(
@@ -168,18 +172,27 @@ def _theta_without_folds(
 def unseen_block_errors(equations: NormalEquations, selection: Sequence[int], sigma: np.ndarray) -> np.ndarray:
     """Squared error of each joint in each block, of the fit to all folds but the block's, shape (dof, B) [N² m²]."""
     order = tuple(selection)
-    widths = [equations.library.widths[i] for i in order]
-    starts = np.concatenate([[0], np.cumsum(widths)]).astype(int)
-    where = {i: np.arange(starts[n], starts[n + 1]) for n, i in enumerate(order)}
+    where = _places(equations, order)
     theta = _theta_without_folds(equations, order, where, sigma) if order else np.zeros((1, 0))
     out = []
     for joint, blocks in enumerate(equations.grams.joints):
         own = [i for i in order if i in equations.library.slots[joint]]
-        columns = np.append(equations.columns(joint, own), blocks.shape[-1] - 1)
         rows = np.concatenate([np.zeros(0, dtype=int), *(where[i] for i in own)])
-        weights = np.column_stack([-theta[:, rows], np.ones(len(theta))])[np.arange(len(blocks)) % len(theta)]
-        out.append(np.einsum("bi,bij,bj->b", weights, blocks[:, columns[:, None], columns], weights))
-    return np.maximum(np.array(out), 0.0)
+        out.append(errors_in_blocks(blocks, equations.columns(joint, own), theta[:, rows]))
+    return np.array(out)
+
+
+def errors_in_blocks(blocks: np.ndarray, columns: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """‖r − X θ‖² of each block, shape (B,) [N² m²].
+
+    Args:
+        blocks: shape (B, K + 1, K + 1), with the residual last.
+        columns: shape (k,), of X.
+        theta: shape (n_folds, k); that of block b is b mod n_folds.
+    """
+    own = np.append(columns, blocks.shape[-1] - 1)
+    weights = np.column_stack([-theta, np.ones(len(theta))])[np.arange(len(blocks)) % len(theta)]
+    return np.maximum(np.einsum("bi,bij,bj->b", weights, blocks[:, own[:, None], own], weights), 0.0)
 
 
 def statistical_inefficiency(equations: NormalEquations, joint: int, columns: np.ndarray, theta: np.ndarray) -> float:

@@ -16,19 +16,10 @@ from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import JointData, fit_law, free_coordinates, huber, robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.diagnosis.motion.joint.refitting import Selection, groups_of, refit, starts_with
+from lagnet.diagnosis.motion.joint.selection import PLAIN
 from lagnet.servos.catalogue import servo_effect
 
-IDENTIFIED = (
-    "gain_error",
-    "viscous_friction",
-    "coulomb_friction",
-    "load_dependent_friction",
-    "position_bias",
-    "command_delay",
-    "rotor_inertia",
-    "quadratic_drag",
-    "stribeck_friction",
-)  # effects of the complete law, named or not
+IDENTIFIED = (*PLAIN, "quadratic_drag", "stribeck_friction")  # effects of the complete law, named or not
 INSTEAD = (
     ("position_bias", "torque_offset"),
     ("load_dependent_friction", "gear_friction"),
