@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.models.test_tilted_bodies import BODIES, SLOW, TILT
 
+from lagnet.effects.motion import Motion
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.corrected.shifted_weights import weight_slope
 from lagnet.rigid_body.robot import load_description
@@ -46,8 +47,6 @@ def test_the_product_is_there_to_second_order_in_the_offset(ur5, poses, others) 
 
 
 def test_nothing_is_added_without_tilt_and_bodies(ur5, poses) -> None:
-    from lagnet.effects.motion import Motion
-
     still = np.zeros_like(poses)
     motion = Motion(np.arange(len(poses)) * 0.01, poses, still, still, still, SLOW, ur5)
     assert np.all(np.asarray(weight_slope(motion, JOINT, (OFFSET,))) == 0.0)

@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from validation.concealed.pictures import draw as draw_picture
-from validation.concealed.protocol import OtherPlants, Run, draw, publish_seals
+from validation.concealed.protocol import Disturbance, OtherPlants, Run, draw, publish_seals
 from validation.concealed.scoring import Score, read_scores
 from validation.concealed.summary import by, by_effect, confusion, figures, misses
 
@@ -84,27 +84,37 @@ def report(scores: Sequence[Score], study: dict, path: Path) -> bool:
     return all(kept) and not found["failures"]
 
 
-def main() -> int:
-    """Run the protocol; exit code 1 where a pass line is crossed, 2 where the folder holds another run."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help=f"the first {QUICK} plants, result in out/")
-    parser.add_argument("--plants", type=int, default=FULL, help="of all groups together")
+def run_options(parser: argparse.ArgumentParser, full: int, quick: int, seed: int) -> None:
+    """Add what every study by this protocol is asked."""
+    parser.add_argument("--quick", action="store_true", help=f"the first {quick} plants, result in out/")
+    parser.add_argument("--plants", type=int, default=full, help="of all groups together")
     parser.add_argument("--first", type=int, default=0, help="number of the first plant")
-    parser.add_argument("--seed", type=int, default=5)
+    parser.add_argument("--seed", type=int, default=seed)
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--out", type=Path, default=None)
     parser.add_argument("--score-only", action="store_true", help="score what is finished")
+
+
+def conducted(given: argparse.Namespace, count: int, out: Path, disturbed: Disturbance | None = None) -> bool:
+    """Seal, simulate and diagnose; False where the folder holds another run, which is said."""
+    plans = draw(given.seed, range(given.first, given.first + count), given.processes)
+    try:
+        publish_seals(plans, out)
+    except OtherPlants as error:
+        print(error, file=sys.stderr)
+        return False
+    Run(out, given.processes, disturbed).conduct(plans)
+    return True
+
+
+def main() -> int:
+    """Run the protocol; exit code 1 where a pass line is crossed, 2 where the folder holds another run."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    run_options(parser, FULL, QUICK, seed=5)
     given = parser.parse_args()
     out = given.out or Path("out") / ("concealed_quick" if given.quick else "concealed")
-    count = QUICK if given.quick else given.plants
-    if not given.score_only:
-        plans = draw(given.seed, range(given.first, given.first + count), given.processes)
-        try:
-            publish_seals(plans, out)
-        except OtherPlants as error:
-            print(error, file=sys.stderr)
-            return 2
-        Run(out, given.processes).conduct(plans)
+    if not given.score_only and not conducted(given, QUICK if given.quick else given.plants, out):
+        return 2
     scores = read_scores(out)
     home = HERE if len(scores) >= FULL else out
     study = {"command": "python -m validation.concealed.study", "seed": given.seed, "plants": len(scores)}

@@ -13,10 +13,9 @@ import sys
 from pathlib import Path
 
 from lagnet.diagnosis.settings import DecisionLimits
-from validation.concealed.protocol import OtherPlants, Run, draw, publish_seals
 from validation.concealed.reliability import named_against_the_odds, odds_of, reliability
 from validation.concealed.scoring import read_scores
-from validation.concealed.study import report
+from validation.concealed.study import conducted, report, run_options
 from validation.texture.plants import RealTexture
 from validation.texture.remainders import read_remainders
 
@@ -28,16 +27,10 @@ def main() -> int:
     """Run the protocol; exit code 1 where a pass line is crossed, 2 where the folder holds another run."""
     given = arguments()
     out = given.out or Path("out") / ("texture_quick" if given.quick else "texture")
-    count = QUICK if given.quick else given.plants
     if not given.score_only:
         texture = RealTexture(read_remainders(given.data, out / "remainders.npz"))
-        plans = draw(given.seed, range(given.first, given.first + count), given.processes)
-        try:
-            publish_seals(plans, out)
-        except OtherPlants as error:
-            print(error, file=sys.stderr)
+        if not conducted(given, QUICK if given.quick else given.plants, out, texture):
             return 2
-        Run(out, given.processes, texture).conduct(plans)
     scores = read_scores(out)
     home = HERE if len(scores) >= FULL else out
     study = {"command": "python -m validation.texture.study", "seed": given.seed, "plants": len(scores)}
@@ -62,13 +55,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
     parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    parser.add_argument("--quick", action="store_true", help=f"the first {QUICK} plants, result in out/")
-    parser.add_argument("--plants", type=int, default=FULL, help="of all groups together")
-    parser.add_argument("--first", type=int, default=0, help="number of the first plant")
-    parser.add_argument("--seed", type=int, default=31)
-    parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--out", type=Path, default=None)
-    parser.add_argument("--score-only", action="store_true", help="score what is finished")
+    run_options(parser, FULL, QUICK, seed=31)
     return parser.parse_args()
 
 
