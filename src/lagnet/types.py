@@ -68,6 +68,10 @@ class RigidBodyModel(InverseDynamics, Protocol):
         """The columns of Y for the link behind one joint, shape (n, dof, 10)."""
         ...
 
+    def weight_regressor(self, joint: int, q: Trajectory) -> np.ndarray:
+        """Holding torque per unit of gravity along each axis and each parameter of one link, shape (3, n, dof, 10)."""
+        ...
+
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """∂τ/∂g, holding torque per unit of each component of gravity, shape (n, dof, 3) [N m s²/m]."""
         ...

@@ -227,6 +227,8 @@ def test_regressor_times_parameters_is_torque(robot: Robot, learned: tuple) -> N
     np.testing.assert_allclose(
         model.gravity_regressor(q) @ model.gravity, model.gravity_torque(q), rtol=1e-8, atol=1e-9
     )
+    weights = sum(model.weight_regressor(k, q) @ p for k, p in enumerate(model.inertial_parameters))
+    np.testing.assert_allclose(np.tensordot(model.gravity, weights, 1), model.gravity_torque(q), rtol=1e-8, atol=1e-9)
 
 
 def test_mounted_otherwise_only_its_weight_differs(robot: Robot, learned: tuple) -> None:

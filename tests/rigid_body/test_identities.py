@@ -118,6 +118,17 @@ def test_gravity_is_linear_in_the_gravity_vector(robot):
 
 @given(arms)
 @few
+def test_weight_of_each_body_is_its_regressor_at_rest_in_a_field_along_each_axis(robot):
+    q = motion(robot)[0]
+    still = np.zeros_like(q)
+    for joint in (*range(robot.n_dof), -1):
+        fields = [robot.with_gravity(g).link_regressor(joint, q, still, still) for g in np.eye(3)]
+        weights = robot.weight_regressor(joint, q)
+        assert np.abs(weights - fields).max() < IDENTITY * scale(np.array(fields))
+
+
+@given(arms)
+@few
 def test_gravity_torque_is_the_slope_of_potential_energy(robot):
     q = motion(robot)[0]
     moves = np.eye(robot.n_dof) * STEP

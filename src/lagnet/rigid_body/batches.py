@@ -90,6 +90,26 @@ def regressor(model: Model, columns: slice, q: np.ndarray, v: np.ndarray, a: np.
     return out
 
 
+def weight_regressor(model: Model, joint: int, q: np.ndarray) -> np.ndarray:
+    """-(m v_i + ω_i × s)·e_k of the body behind a joint, shape (3, n, dof, 10): its weight in a field along each axis.
+
+    v_i and ω_i are the columns of the Jacobian at the base's origin, s = m p + R h the first moment about it of a body
+    with mass m and first moment h in the joint's frame, at p and turned by R. Inertia has no weight.
+    """
+    data, frames = model.createData(), pin.computeJointJacobians
+    place = data.oMi[joint + 1]
+    columns, turns, origins = np.empty((len(q), 6, model.nv)), np.empty((len(q), 3, 3)), np.empty((len(q), 3))
+    for i in range(len(q)):
+        columns[i] = frames(model, data, q[i]).reshape(6, model.nv)
+        turns[i], origins[i] = place.rotation, place.translation
+    columns[:, :, [i for i in range(model.nv) if i + 1 not in model.supports[joint + 1]]] = 0.0
+    moved, spun = np.moveaxis(columns[:, :3], 1, 0), np.moveaxis(columns[:, 3:], 1, 2)[:, :, None]
+    out = np.zeros((3, len(q), model.nv, 10))
+    out[..., 0] = -moved - np.moveaxis(np.cross(spun[:, :, 0], origins[:, None]), 2, 0)
+    out[..., 1:4] = -np.moveaxis(np.cross(spun, np.moveaxis(turns, 1, 2)[:, None]), 3, 0)
+    return out
+
+
 def tip_jacobian(model: Model, frame: int, q: np.ndarray) -> np.ndarray:
     """Velocity of a frame per joint velocity, axes of the base, shape (n, 6, dof)."""
     data, jacobian = model.createData(), pin.computeFrameJacobian

@@ -138,6 +138,10 @@ class Robot:
         k = self._joint(joint)
         return batches.regressor(self._model, slice(10 * k, 10 * k + 10), *self._batch(q=q, v=v, a=a))
 
+    def weight_regressor(self, joint: int, q: Trajectory) -> np.ndarray:
+        """Holding torque per unit of gravity along each axis and each parameter of one body, shape (3, n, dof, 10)."""
+        return batches.weight_regressor(self._model, self._joint(joint), *self._batch(q=q))
+
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """Holding torque per unit of each component of the gravity vector, shape (n, dof, 3), [N m s²/m]."""
         (q,) = self._batch(q=q)

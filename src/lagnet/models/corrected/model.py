@@ -35,6 +35,7 @@ OF_BODIES = {
     "inertial_parameters",
     "joint_torque_regressor",
     "link_regressor",
+    "weight_regressor",
     "with_gravity",
 }
 LAYERS = ("named", "identified", "full")

@@ -35,9 +35,17 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
     change = change_of_gravity(motion, tilts)
     field = np.asarray(motion.bodies.gravity, dtype=float) + change
     ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
-    held = [p.bodies.gravity_regressor(p.q) @ change for p in (ahead, behind)]
-    held = [sum((weight(p, b, field) for b in bodies), h) for p, h in zip((ahead, behind), held, strict=True)]
-    return (held[0] - held[1]) / (2.0 * STEP)
+    more, less = (_weight(p, bodies, field) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
+    return (more - less) / (2.0 * STEP)
+
+
+def _weight(motion: Motion, bodies: Sequence[Named], field: np.ndarray) -> np.ndarray:
+    return sum((weight(motion, b, field) for b in bodies), np.zeros_like(motion.load))
+
+
+def _turned(motion: Motion) -> np.ndarray:
+    """Holding torque of the nominal bodies per unit of gravity along each axis, shape (n, dof, 3)."""
+    return motion.remembered("turned", lambda: motion.bodies.gravity_regressor(motion.q))
 
 
 def secant_columns(motion: Motion, joint: int, known: Sequence[Named], columns: np.ndarray) -> np.ndarray:

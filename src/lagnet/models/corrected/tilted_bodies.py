@@ -108,9 +108,4 @@ def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
 
 def fields_of(motion: Motion, link: int) -> np.ndarray:
     """Holding torque per unit of each parameter of a body and of gravity along each axis, shape (3, n, dof, 10)."""
-    return motion.remembered(f"weights_{link}", lambda: _fields(motion, link))
-
-
-def _fields(motion: Motion, link: int) -> np.ndarray:
-    rest = np.zeros_like(motion.q)
-    return np.stack([motion.bodies.with_gravity(g).link_regressor(link, motion.q, rest, rest) for g in np.eye(3)])
+    return motion.remembered(f"weights_{link}", lambda: motion.bodies.weight_regressor(link, motion.q))

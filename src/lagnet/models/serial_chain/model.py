@@ -143,6 +143,11 @@ class SerialChain:
         k = joint % self.n_dof
         return self.joint_torque_regressor(q, v, a)[:, :, 10 * k : 10 * k + 10]
 
+    def weight_regressor(self, joint: int, q: Trajectory) -> np.ndarray:
+        """Holding torque per unit of gravity along each axis and each parameter of one link, shape (3, n, dof, 10)."""
+        still = np.zeros_like(q)
+        return np.stack([self.with_gravity(axis).link_regressor(joint, q, still, still) for axis in np.eye(3)])
+
     def gravity_regressor(self, q: Trajectory) -> np.ndarray:
         """Torque per unit of gravity along the axes of the model's base frame, shape (n, dof, 3) [N m s²/m]."""
         return np.stack([self.with_gravity(axis).gravity_torque(q) for axis in np.eye(3)], axis=-1)
