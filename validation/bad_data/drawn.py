@@ -1,4 +1,4 @@
-"""Corruptions drawn by a seed over five arms, two of them real, each diagnosed; names are held against the right ones."""
+"""Corruptions drawn by a seed over five arms, two of them real, each diagnosed, and their names counted."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _real(name: str) -> tuple[Robot, list[Recording]]:
     return robot, [lagnet.load_recording(f, robot=robot, torque_constant=constants) for f in files]
 
 
-def figures(rows: Sequence[Row]) -> dict:
+def names_counted(rows: Sequence[Row]) -> dict:
     """Causes told, and names held against the right ones, of all arms and of each."""
     return {**_counted(rows), "by_arm": {arm: _counted([r for r in rows if r.arm == arm]) for arm in _arms_of(rows)}}
 

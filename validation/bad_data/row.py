@@ -51,7 +51,9 @@ def names_of(verdict) -> tuple[str, ...]:
     return tuple(f"{e.effect} at {e.joint}" for e in verdict.effects)
 
 
-def diagnosed(robot: Robot, arm: str, corruption: Corruption, recordings: list[Recording], right: Collection[str]) -> Row:
+def diagnosed(
+    robot: Robot, arm: str, corruption: Corruption, recordings: list[Recording], right: Collection[str]
+) -> Row:
     """Diagnoses corrupted recordings.
 
     Args:

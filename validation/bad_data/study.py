@@ -21,7 +21,7 @@ import lagnet
 from lagnet.diagnosis.data_quality.inspect import inspect_quality
 from lagnet.files import finite_json, write_whole
 from validation.bad_data.corruptions import CORRUPTIONS, Corruption
-from validation.bad_data.drawn import ARMS, SEED, drawn, figures, plant, planted
+from validation.bad_data.drawn import ARMS, SEED, drawn, names_counted, plant, planted
 from validation.bad_data.row import Row, diagnosed
 from validation.bad_data.sound import SoundSettings, drawn_settings, sound_recording
 
@@ -100,7 +100,7 @@ def with_arm(result: dict, arm: str, rows: Sequence[Row]) -> list[Row]:
 
 def with_part(result: dict, part: str, found: list) -> dict:
     """The result with the figures and all rows of one part in the place of those before."""
-    figures = {"table": _of_table, "drawn": figures, "sound": _of_alarms}[part](found)
+    figures = {"table": _of_table, "drawn": names_counted, "sound": _of_alarms}[part](found)
     rows = [asdict(row) if isinstance(row, Row) else row for row in found]
     kept = {k: v for k, v in result["figures"].items() if k != part}
     return {**result, "figures": {**kept, part: figures}, part: json.loads(json.dumps(rows))}
