@@ -18,10 +18,10 @@ def run() -> int:
     Returns:
         The exit code, see `lagnet.cli.main`.
     """
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, control_c)
-        signal.signal(signal.SIGALRM, control_c)
     try:
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGALRM, control_c)
+            signal.signal(signal.SIGINT, control_c)
         from lagnet.cli.main import main
 
         code = main()
@@ -48,13 +48,15 @@ def leave(code: int) -> int:
 
 
 def control_c(_: int, frame: FrameType | None) -> None:
-    """Interrupts, but never while a module is loaded: compiled ones crash when that fails halfway.
+    """Interrupts, but neither while a module is loaded, which compiled ones crash of, nor beside the command.
 
     Raises:
-        KeyboardInterrupt: no module is being loaded; otherwise the question is put again soon.
+        KeyboardInterrupt: the command runs and no module is being loaded; otherwise the question is put again soon,
+            which an interpreter that ends no longer hears.
     """
+    beside = frame is not None and frame.f_code is run.__code__  # before the command began, or after its last line
     while frame is not None:
-        if frame.f_code.co_filename == IMPORT:
+        if beside or frame.f_code is leave.__code__ or frame.f_code.co_filename == IMPORT:
             signal.setitimer(signal.ITIMER_REAL, AGAIN)
             return
         frame = frame.f_back
