@@ -66,5 +66,6 @@ def test_a_real_servo_with_a_pendulum(shared_data, tmp_path) -> None:
 
 def test_a_real_arm_of_servos(shared_data, tmp_path) -> None:
     robot = load_description(shared_data / "so101" / "so101.xml")
-    log = load_recording(shared_data / "so101" / "multisine", robot=robot)
-    assert_figures_agree(diagnose_motion([log], robot), tmp_path / "found")
+    runs = ("multisine", "lissajous_pattern", "large_amplitude")
+    logs = [load_recording(shared_data / "so101" / run, robot=robot) for run in runs]
+    assert_figures_agree(diagnose_motion(logs[:2], robot, logs[2:]), tmp_path / "found")
