@@ -10,6 +10,7 @@ from types import FrameType
 INTERRUPTED = 3
 AGAIN = 0.02  # [s] after which it is asked again whether modules are still being loaded
 IMPORT = "<frozen importlib._bootstrap>"
+COLLECTED = ("__del__", "_xla_gc_callback")  # called by the garbage collector, which swallows what they raise
 
 
 def run() -> int:
@@ -18,10 +19,10 @@ def run() -> int:
     Returns:
         The exit code, see `lagnet.cli.main`.
     """
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, control_c)
-        signal.signal(signal.SIGALRM, control_c)
     try:
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGALRM, control_c)
+            signal.signal(signal.SIGINT, control_c)
         from lagnet.cli.main import main
 
         code = main()
@@ -48,17 +49,24 @@ def leave(code: int) -> int:
 
 
 def control_c(_: int, frame: FrameType | None) -> None:
-    """Interrupts, but never while a module is loaded: compiled ones crash when that fails halfway.
+    """Interrupts, but not where that would do harm or be lost; there the question is put again soon.
 
     Raises:
-        KeyboardInterrupt: no module is being loaded; otherwise the question is put again soon.
+        KeyboardInterrupt: the command runs, no module is being loaded, and no garbage collected.
     """
+    beside = frame is not None and frame.f_code is run.__code__  # before the command began, or after its last line
     while frame is not None:
-        if frame.f_code.co_filename == IMPORT:
+        if beside or _unheard(frame):
             signal.setitimer(signal.ITIMER_REAL, AGAIN)
             return
         frame = frame.f_back
     raise KeyboardInterrupt
+
+
+def _unheard(frame: FrameType) -> bool:
+    """Whether an interruption from here crashes compiled modules that fail halfway, is swallowed, or comes too late."""
+    code = frame.f_code
+    return code is leave.__code__ or code.co_filename == IMPORT or code.co_name in COLLECTED
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -57,3 +58,37 @@ def test_it_runs_the_command_line_and_ends_undisturbed() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("lagnet ")
+
+
+def test_control_c_on_the_way_out_keeps_the_exit_code() -> None:
+    code = "import signal, sys, lagnet.__main__ as entry, lagnet.cli.main as m\nm.main = lambda: 2\n"
+    code += "def seen(frame, *_):\n    if frame.f_code.co_name == 'leave':\n"
+    code += "        signal.raise_signal(signal.SIGINT)\n"
+    code += "sys.settrace(seen)\nsys.exit(entry.run())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "")
+
+
+def test_control_c_between_the_command_and_its_end_is_asked_again() -> None:
+    after = SimpleNamespace(f_code=entry.run.__code__, f_back=None)
+    signal.signal(signal.SIGALRM, lambda *_: asked.append(True))
+    asked: list[bool] = []
+    entry.control_c(signal.SIGINT, after)  # does not raise
+    signal.pause()
+    assert asked
+
+
+def test_control_c_while_garbage_is_collected_is_not_lost() -> None:
+    class Pressed:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGINT)
+
+    signal.signal(signal.SIGALRM, entry.control_c)
+    signal.signal(signal.SIGINT, entry.control_c)
+    with pytest.raises(KeyboardInterrupt):
+        _dropped([Pressed()])
+
+
+def _dropped(things: list) -> None:
+    things.clear()
+    signal.pause()  # the question is put again here

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import os
 import struct
 import zipfile
 from contextlib import suppress
@@ -330,3 +331,9 @@ def test_contradicting_arguments_are_refused(tmp_path: Path) -> None:
         load_recording(path, limits=np.array([[-1.0, 1.0]]))
     with pytest.raises(RecordingError, match="n_dof must be at least 1"):
         load_recording(path, n_dof=0)
+
+
+def test_a_pipe_is_told_as_one_and_not_opened(tmp_path) -> None:
+    os.mkfifo(tmp_path / "run.csv")
+    with pytest.raises(RecordingError, match="is a pipe"):
+        load_recording(tmp_path / "run.csv")

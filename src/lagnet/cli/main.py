@@ -132,7 +132,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except typer.Abort:
         return _complain("interrupted", INTERRUPTED)
     except MemoryError:
-        return _complain("not enough memory for this input; give fewer or shorter recordings")
+        return _complain("not enough memory for this input; give fewer or shorter recordings or fewer joints")
     except BrokenPipeError:
         # The reader of our output went away (`lagnet ... | head`): nothing is wrong with the work done.
         sys.stdout = None  # type: ignore[assignment]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
+from tests.reports.diagnosis_report.figures import assert_figures_agree
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import holdout_table
@@ -92,3 +93,9 @@ def test_emps_has_the_printed_dry_friction_and_the_right_mass(emps) -> None:
     assert {"viscous_friction", "coulomb_friction", "torque_offset"} <= set(found)
     assert found["coulomb_friction"].value("Fc") == pytest.approx(20.4, rel=0.03)
     assert not {"rotor_inertia", "link_inertia", "payload"} & set(found)
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_figures_agree_in_words_report_verdict_and_table(arm, request, tmp_path) -> None:
+    assert_figures_agree(request.getfixturevalue(arm), tmp_path)

@@ -75,7 +75,7 @@ def _solve_all(systems, folds, scale, base, added, ridge):
     m, w, k = added.shape[0], added.shape[1], base.size
     errors, theta = np.zeros(m), np.zeros((m, k + w))
     columns, coefficients = np.zeros(k + w, np.int64), np.zeros(k + w)
-    columns[:k] = base
+    _copy(base, columns, 0)
     root, half = np.zeros((k, k)), np.zeros(k)
     inner, parts = np.zeros((w, w)), np.zeros((w, k))
     for f in range(len(systems)):
@@ -88,15 +88,22 @@ def _solve_all(systems, folds, scale, base, added, ridge):
         _factor(root)
         _forward(root, half)
         for n in range(m):
-            columns[k:] = added[n]
+            _copy(added[n], columns, k)
             _bordered(system, root, half, columns, ridge, inner, parts, coefficients)
             for i in range(k + w):
                 coefficients[i] *= scale[f, columns[i]]
             if f < len(folds):
                 errors[n] += squared_error(folds[f], columns, coefficients)
             else:
-                theta[n] = coefficients
+                _copy(coefficients, theta[n], 0)
     return errors, theta
+
+
+@njit(cache=True, error_model="numpy")
+def _copy(values, out, first):
+    """Writes values (n,) into out from index `first` on; an assignment to a slice takes seconds to compile."""
+    for i in range(len(values)):
+        out[first + i] = values[i]
 
 
 @njit(cache=True, error_model="numpy")

@@ -51,6 +51,8 @@ def open_source(path: str | Path, progress: Progress | None = None) -> tuple[Tab
     if path.is_dir():
         return _open_folder(path, where, progress)
     suffix = _suffix_of(path)
+    if path.exists() and not path.is_file():
+        raise RecordingError("is a pipe, a socket or a device", where=where, next_step="give a plain file")
     if not path.is_file():
         known = suffix in READERS or suffix in LOGS or path.suffix == ""
         if not known:
