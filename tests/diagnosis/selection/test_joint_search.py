@@ -76,3 +76,10 @@ def test_a_small_stribeck_curve_behind_a_large_spring_is_no_coulomb_friction(pla
     posed = pose(arm, real.record(43), real.record(44))
     chosen = {posed.library.hypotheses[i].place for i in posed.search().indices}
     assert chosen == {("joint_spring", 1), ("stribeck_friction", 1)}
+
+
+def test_a_spring_far_from_its_rest_position_is_no_torque_offset(plant, arm, at) -> None:
+    real = plant(at(2, lambda q, v, a, t: 5.0 * (q + 30.0)))
+    posed = pose(arm, real.record(45), real.record(46))
+    view = views_of(posed.equations, posed.search())[2]
+    assert simplify(view, (number(view, "joint_spring"),)) == (number(view, "joint_spring"),)

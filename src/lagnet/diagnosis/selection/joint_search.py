@@ -162,9 +162,12 @@ def simplify(view: JointView, selection: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def gains_over(view: JointView, selection: Sequence[int], index: int, other: Sequence[int]) -> bool:
-    """E(special case) − E(law) ≥ max(s E, c · explained): whether a law gains enough over its special case."""
+    """E(special case) − E(law) ≥ max(s E, c · explained): whether a law gains enough over its special case.
+
+    At most the power of the joint's torque about its mean counts as explained: far from rest, a spring is a constant.
+    """
     before, after = view.error(selection), view.error(other)
-    explained = view.error([k for k in selection if k != index]) - before
+    explained = min(view.error([k for k in selection if k != index]) - before, view.torque_power)
     limits = view.limits
     return after - before >= max(limits.least_share * after, limits.least_over_special_case * explained)
 
