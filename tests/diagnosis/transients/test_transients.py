@@ -110,6 +110,23 @@ def test_a_load_that_is_picked_up_is_a_payload_from_then_on(plant, arm, names, d
 
 
 @pytest.mark.slow
+def test_a_load_is_found_where_one_joint_is_much_less_noisy_than_the_others(plant, arm, names, during) -> None:
+    real, rng = plant(), np.random.default_rng(3)
+    loaded = arm.with_payload(1.5, np.array([0.03, 0.0, 0.1]), 0.004 * np.eye(3))
+
+    def noisy(recording: Recording) -> Recording:
+        noise = rng.normal(0.0, 3.0, recording.tau.shape) * (np.arange(arm.n_dof) < arm.n_dof - 1)
+        return replace(recording, tau=recording.tau + noise)
+
+    late = during(
+        real.record(12), real, lambda q, v, a: loaded.inverse_dynamics(q, v, a) - arm.inverse_dynamics(q, v, a)
+    )
+    result = diagnose([noisy(real.record(11)), noisy(late)], arm, [noisy(real.record(13))])
+    assert names(result) == {("payload", None)}
+    assert result.effects[0].interval_s == pytest.approx((START, END), abs=WITHIN)
+
+
+@pytest.mark.slow
 def test_a_contact_in_a_held_out_recording_is_told_and_spoils_no_name(plant, arm, at, names, during) -> None:
     real = plant(at(1, lambda q, v, a, t: FRICTION * v))
     held = during(real.record(23), real, pushed(arm))

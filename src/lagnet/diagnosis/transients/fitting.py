@@ -34,7 +34,7 @@ class EventFit:
         rival: the other law.
         residual_share: residual power inside beyond noise with the law over that without, 0 to 1.
         over_usual: residual power inside with the law over the usual residual power of the recordings.
-        gains: shape (dof,), log likelihood that the law gains inside, joint by joint [nats].
+        gains: shape (dof,), ½ n ln(E(0)/E(law)) inside, the likelihood gained with unknown noise, by joint [nats].
         without, with_it: nMSE inside the event, averaged over the joints that it moves, on parts that were not fitted.
         tie_odds: log10 odds below which the two are tied.
     """
@@ -166,16 +166,21 @@ def _cut(series: RecordingResidual, rows: np.ndarray) -> RecordingResidual:
 def _residual_power(
     near: Problem, series: RecordingResidual, effect: NamedEffect, scan: Scan
 ) -> tuple[float, float, np.ndarray]:
-    """E(law)/E(0) inside the event, E(law) over the usual power, and the gain at each joint [nats]."""
+    """E(law)/E(0) inside the event, E(law) over the usual power, and the gain at each joint [nats].
+
+    With the usual power as the noise, a joint that is usually almost still would gain more than all others together.
+    """
     (after,) = residual_by_recording(near, near.fit, (effect,))
     start, end = effect.interval or (0.0, 0.0)
     rows = _inside(series, start, end)
-    noise = max(1.0, float(series.valid[rows].sum()))
+    counts = series.valid[rows].sum(axis=0)
+    noise = max(1.0, float(counts.sum()))
     before, after_power = (
         np.sum((s.residual[rows] * s.valid[rows]) ** 2, axis=0) / scan.power for s in (series, after)
     )
     share = float(np.clip((after_power.sum() - noise) / max(before.sum() - noise, 1e-300), 0.0, 1.0))
-    return share, float(after_power.sum()) / noise, 0.5 * (before - after_power) / scan.inflation
+    gains = 0.5 * counts * np.log(np.maximum(before, 1e-300) / np.maximum(after_power, 1e-300)) / scan.inflation
+    return share, float(after_power.sum()) / noise, gains
 
 
 def _unseen(near: Problem, series: RecordingResidual, effect: NamedEffect) -> tuple[float, float]:
