@@ -144,7 +144,18 @@ def test_velocity_that_lags_is_refused() -> None:
     rng = np.random.default_rng(5)
     late = exact(time - 0.04)[1]
     lagging = replace(record(time), q=exact(time)[0] + 5e-4 * rng.standard_normal((3000, 2)), v=late)
-    assert condition([lagging]).velocity_from == "differentiated"
+    refused = condition([lagging])
+    assert refused.velocity_from == "differentiated"
+    assert "% off the rate at which the position changes" in refused.velocity_reason
+    assert record(time).joints[0] in refused.velocity_reason or record(time).joints[1] in refused.velocity_reason
+
+
+def test_why_velocity_is_differentiated_is_told() -> None:
+    time = even(np.random.default_rng(0), 3000)
+    rng = np.random.default_rng(6)
+    rough = replace(record(time), v=exact(time)[1] + 0.02 * rng.standard_normal((3000, 2)))
+    assert "noisier" in condition([rough]).velocity_reason
+    assert "no recording has speeds" in condition([replace(record(time), v=None)]).velocity_reason
 
 
 @pytest.mark.parametrize("bandwidth", [3.0, 10.0, 30.0])

@@ -71,6 +71,7 @@ def compose_motion_verdict(
             "rate_hz": float(fit[0].rate),
             "bandwidth_hz": float(fit[0].rate) / 2.0,
             "velocity_from": "differentiated",
+            "velocity_reason": "rollouts are fitted to positions and judged on them",
             "acceleration_from": "differentiated",
         },
         joints=tuple(

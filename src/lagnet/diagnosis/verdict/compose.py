@@ -43,6 +43,7 @@ def compose_verdict(state: DiagnosisState, fit: Sequence[Recording], held: Seque
         "rate_hz": state.fit.rate,
         "bandwidth_hz": state.fit.bandwidth,
         "velocity_from": state.fit.velocity_from,
+        "velocity_reason": state.fit.velocity_reason,
         "acceleration_from": state.fit.acceleration_from,
     }
     mismatch = tuple(_mismatch(state, j) for j in range(problem.n_dof))

@@ -12,11 +12,11 @@ from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
 from lagnet.recordings.conditioning.noise import band_noise, white_noise
 from lagnet.recordings.conditioning.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
 from lagnet.recordings.conditioning.stretches import stretches_of
+from lagnet.recordings.conditioning.velocity_source import choose_velocity
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.signals import DRIVE_SIGNALS
 
 WIDER = 2.0  # motion is filtered this much wider than torque, so that its own filter does not colour the torque
-DISAGREEMENT = 0.05  # recorded velocity further than this from that of the positions is not used
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +53,7 @@ class Conditioned:
         rate: sample rate [Hz].
         bandwidth: zero-phase low-pass for torques, recorded and modelled alike [Hz].
         velocity_from, acceleration_from: "recorded" or "differentiated".
+        velocity_reason: why velocity comes from there.
         noise_q, noise_v, noise_a, noise_tau: shape (dof,), what noise leaves after filtering, standard deviations.
         white_q, white_tau: shape (dof,), noise of the samples as recorded.
         torque_shift: by which torques were read later than their stamps say [s].
@@ -62,6 +63,7 @@ class Conditioned:
     rate: float
     bandwidth: float
     velocity_from: str
+    velocity_reason: str
     acceleration_from: str
     noise_q: np.ndarray
     noise_v: np.ndarray
@@ -91,7 +93,8 @@ def condition(
     noise = _noise(recordings, rate)
     chosen = choose_bandwidth(recordings, noise) if bandwidth is None else bandwidth
     motion_band = min(WIDER * chosen, 0.4 * rate)
-    blend = _velocity_crossover(recordings, noise, rate, motion_band)
+    source = choose_velocity(recordings, noise, rate, motion_band)
+    blend = source.crossover
     stretches = []
     for index, recording in enumerate(recordings):
         for rows in stretches_of(recording):
@@ -103,7 +106,8 @@ def condition(
         stretches=tuple(stretches),
         rate=rate,
         bandwidth=chosen,
-        velocity_from="differentiated" if blend is None else "recorded",
+        velocity_from=source.name,
+        velocity_reason=source.reason,
         acceleration_from="differentiated",
         noise_q=noise_q,
         noise_v=noise_v,
@@ -153,40 +157,6 @@ def _noise(recordings: Sequence[Recording], rate: float) -> dict[str, np.ndarray
                 if signal is not None:
                     powers[name].append(white_noise(resample(used.time, signal, clock)) ** 2)
     return {n: np.sqrt(np.average(p, axis=0, weights=weights)) for n, p in powers.items() if len(p) == len(weights) > 0}
-
-
-def _velocity_crossover(
-    recordings: Sequence[Recording], noise: dict[str, np.ndarray], rate: float, motion_band: float
-) -> float | None:
-    """Frequency [Hz] above which recorded velocity is less noisy than differentiated position; None: do not use it."""
-    if "v" not in noise or not all(_velocity_agrees(r, rate, motion_band) for r in recordings):
-        return None
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = noise["v"] / noise["q"] / (2.0 * np.pi)
-    finite = ratio[np.isfinite(ratio) & (ratio > 0)]
-    crossover = float(np.median(finite)) if finite.size else np.inf
-    lowest = 2.0 * rate / max(len(r) for r in recordings) + 0.1
-    return max(crossover, lowest) if crossover < 0.8 * motion_band else None
-
-
-def _velocity_agrees(recording: Recording, rate: float, motion_band: float) -> bool:
-    """Whether recorded velocity is the derivative of position, without lag, as far as the motion goes."""
-    if recording.v is None:
-        return False
-    off, power = np.zeros(recording.n_dof), np.zeros(recording.n_dof)
-    for rows in stretches_of(recording):
-        used = recording.used(rows)
-        if len(used) < 4 * SHORTEST or used.v is None:
-            continue
-        time = used.time
-        clock = even_clock(time, rate)
-        v = derivative(clock, low_pass(resample(time, used.q, clock), rate, motion_band))
-        recorded = low_pass(resample(time, used.v, clock), rate, motion_band)
-        inside = slice(SHORTEST, -SHORTEST)
-        off += np.sum(low_pass(recorded - v, rate, 0.25 * motion_band)[inside] ** 2, axis=0)
-        power += np.sum(v[inside] ** 2, axis=0)
-    moving = power > 0.01 * power.max() if power.size else np.zeros(0, bool)
-    return bool(power.any() and np.all(off[moving] < DISAGREEMENT**2 * power[moving]))
 
 
 def _derived_noise(
