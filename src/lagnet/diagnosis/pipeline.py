@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
-from lagnet.diagnosis.estimation.misspecification import misspecification_errors, widened, with_convention
+from lagnet.diagnosis.estimation.misspecification import interval_errors, widened, with_convention
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.free_bodies import (
     are_scaled_everywhere,
@@ -109,13 +109,13 @@ def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
 
 
 def with_misspecification(state: DiagnosisState) -> DiagnosisState:
-    """The same with 95 % intervals √(h² + δp²), widened by misspecification errors δp; names and values stay."""
+    """The same with 95 % intervals √(h_L² + δp²), of long blocks and of misspecification; names and values stay."""
     effects = state.effects
     if not effects:
         return state
     problem = lasting(state.problem, state.events)
     power = np.maximum(state.selection.fit.sse, state.selection.scales.noise_power)
-    found = misspecification_errors(problem, effects, np.sqrt(power / state.equations.samples))
+    found = interval_errors(problem, effects, np.sqrt(power / state.equations.samples))
     errors = [with_convention(*pair) for pair in zip(effects, found, strict=True)]
     old = (*state.refit.intervals, *(p.intervals for p in state.transients))
     wide = [widened(*pair) for pair in zip(old, errors, strict=True)]

@@ -15,6 +15,7 @@ from scipy.stats import t as student
 
 from lagnet.diagnosis.estimation.data_subsets import parts_of
 from lagnet.diagnosis.estimation.gauss_newton import blocks_of
+from lagnet.diagnosis.estimation.long_run import long_run_excess
 from lagnet.diagnosis.estimation.refit import Tangent, tangent_at
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.normal_equations import inverse, normal
@@ -35,20 +36,36 @@ def with_convention(effect: NamedEffect, errors: dict[str, float]) -> dict[str, 
     return {name: float(np.hypot(error, open_by.get(name, 0.0))) for name, error in errors.items()}
 
 
-def misspecification_errors(
-    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray
-) -> list[dict[str, float]]:
-    """By effect and parameter, the misspecification error that widens the half-width of a 95 % interval.
+def interval_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> list[dict[str, float]]:
+    """By effect and parameter, √(δp² + h_L² − h²): what widens the half-width h of a 95 % interval.
+
+    δp is the misspecification error, h_L the half-width from longer blocks (`long_run_excess`).
 
     Args:
         problem: as it was fitted.
         effects: as they were fitted, all that were fitted together.
         sigma: shape (dof,), the joints' weights in the fit [N m].
     """
-    names = [list(e.parameters()) for e in effects]
-    of = np.repeat(np.arange(len(effects)), [len(n) for n in names])
     tangent = tangent_at(problem, effects, sigma)
-    whole = _Influence(problem, tangent, lambda n, r, j: (r, j))
+    whole = _Influence(problem, tangent, _as_it_is)
+    excess = long_run_excess(whole.blocks, whole.counts)
+    return _by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma) + excess))
+
+
+def misspecification_errors(
+    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray
+) -> list[dict[str, float]]:
+    """By effect and parameter, the misspecification error δp alone; arguments as of `interval_errors`."""
+    tangent = tangent_at(problem, effects, sigma)
+    whole = _Influence(problem, tangent, _as_it_is)
+    return _by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma)))
+
+
+def _misspecification(
+    problem: Problem, tangent: Tangent, whole: _Influence, effects: Sequence[NamedEffect], sigma: np.ndarray
+) -> np.ndarray:
+    """t² times the excess variance of the shifts between parts of the motion and all of it, shape (n_parameters,)."""
+    of = np.repeat(np.arange(len(effects)), [len(e.parameters()) for e in effects])
     quantile = float(student.ppf(0.975, max(2, whole.blocks.shape[0] - 1)))
     variance = np.zeros(of.size)
     for view, speaks_for in _views(problem, tangent, effects, sigma):
@@ -57,27 +74,38 @@ def misspecification_errors(
         excess = moved.sum(axis=0) ** 2 - quantile**2 * np.sum(moved**2, axis=0)
         tells = (LEAST_SAY * part.variance <= whole.variance) & (part.variance > LEAST_SAY * whole.variance)
         variance = np.where(tells & speaks_for[of], np.maximum(variance, excess), variance)
-    widths = quantile * np.sqrt(variance)
+    return quantile**2 * variance
+
+
+def _as_it_is(n: int, residuals: np.ndarray, jacobian: np.ndarray) -> Linear:
+    return residuals, jacobian
+
+
+def _by_effect(effects: Sequence[NamedEffect], widths: np.ndarray) -> list[dict[str, float]]:
+    names = [list(e.parameters()) for e in effects]
+    ends = np.cumsum([len(n) for n in names])[:-1]
     return [
-        {name: float(w) for name, w in zip(names[n], widths[of == n], strict=True) if name not in EDGES}
-        for n in range(len(effects))
+        {name: float(w) for name, w in zip(own, part, strict=True) if name not in EDGES}
+        for own, part in zip(names, np.split(widths, ends), strict=True)
     ]
 
 
 class _Influence:
     """What each block of time adds to the parameters in one step of a fit.
 
-    `blocks` has shape (n_blocks, n_parameters); `variance`, shape (n_parameters,), is that of unit noise.
+    `blocks` has shape (n_blocks, n_parameters); `counts` are those of each segment; `variance`, shape
+    (n_parameters,), is that of unit noise.
     """
 
     def __init__(self, problem: Problem, tangent: Tangent, view: View) -> None:
         own = tangent.slopes.shape[1]  # columns beyond are those of laws that stand for no parameter
-        gram, scores = 0.0, []
+        gram, scores, self.counts = 0.0, [], []
         for n, blocks in enumerate(blocks_of(problem, tangent.pieces)):
             r, j = view(n, tangent.residuals[n], tangent.jacobians[n])
             gram = gram + normal([j], [r])[0]
             row = np.einsum("njk,nj->nk", j, r)
             scores.extend(row[rows].sum(axis=0) for rows in blocks)
+            self.counts.append(len(blocks))
         bread = inverse(np.asarray(gram))[:own]
         self.blocks = -np.array(scores) @ bread.T @ tangent.slopes.T
         self.variance = np.einsum("pk,kl,pl->p", tangent.slopes, bread[:, :own], tangent.slopes)

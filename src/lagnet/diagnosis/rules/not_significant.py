@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, final
 
-from lagnet.diagnosis.estimation.misspecification import misspecification_errors, widened
+from lagnet.diagnosis.estimation.misspecification import interval_errors, widened
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
@@ -30,7 +30,7 @@ class NotSignificant(RejectionRule):
         effects = candidate.effects
         if not effects:
             return ()
-        errors = misspecification_errors(candidate.problem, effects, candidate.sigma)
+        errors = interval_errors(candidate.problem, effects, candidate.sigma)
         wide = [widened(*pair) for pair in zip(candidate.refit.intervals, errors, strict=True)]
         unsure = [n for n, e in enumerate(effects) if not effect_named(e.effect).is_determined(wide[n])]
         if not unsure:
