@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 from tests.reports.diagnosis_report.figures import assert_figures_agree
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.rules.value_at_bound import distance_to_bound
 from lagnet.diagnosis.writing import holdout_table
+from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.loading.load import load_recording
+from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import load_description
 
 pytestmark = pytest.mark.slow
@@ -21,7 +26,9 @@ DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "preslidi
 def diagnosed(folder, urdf: str, fit: list[str], constants=None):
     robot = load_description(folder / urdf)
     read = [load_recording(folder / f, robot=robot, torque_constant=constants) for f in [*fit, "holdout.csv.gz"]]
-    return diagnose(read[:-1], robot, read[-1:])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)  # of NumPy, which users would see on the terminal
+        return diagnose(read[:-1], robot, read[-1:])
 
 
 def nmse_at_5_hz(result) -> np.ndarray:
@@ -99,3 +106,59 @@ def test_emps_has_the_printed_dry_friction_and_the_right_mass(emps) -> None:
 @pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
 def test_figures_agree_in_words_report_verdict_and_table(arm, request, tmp_path) -> None:
     assert_figures_agree(request.getfixturevalue(arm), tmp_path)
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_no_claim_rests_on_a_bound_or_on_an_open_interval(arm, request) -> None:
+    result = request.getfixturevalue(arm)
+    for effect in result.state.effects:
+        for parameter in effect_named(effect.effect).parameters:
+            assert distance_to_bound(effect, parameter)[0] > 1e-3, (effect, parameter.name)
+    for effect in result.effects:
+        intervals = {p.name: p.ci95 for p in effect.parameters}
+        assert np.all(np.isfinite(list(intervals.values()))), effect
+        assert effect_named(effect.effect).is_determined(intervals), effect  # does not hold the value of its absence
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_no_ripple_beyond_the_band_and_no_limit_that_samples_exceed(arm, request) -> None:
+    result = request.getfixturevalue(arm)
+    for effect in result.effects:
+        joint = result.corrected.joints.index(effect.joint) if effect.joint in result.corrected.joints else None
+        if effect.effect == "torque_ripple":
+            speed = np.median(np.concatenate([np.abs(s.v[:, joint]) for s in result.state.fit.stretches]))
+            assert effect.value("N") * speed / (2.0 * np.pi) < result.state.fit.bandwidth
+        if effect.effect == "torque_saturation":
+            torque = np.concatenate([np.abs(r.tau[:, joint]) for r in result.fit_recordings])
+            assert np.mean(torque > 1.05 * effect.value("tau_max")) < 0.01
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_corrected_bodies_could_be_built(arm, request) -> None:
+    corrected = request.getfixturevalue(arm).corrected
+    before, after = corrected.nominal.inertial_parameters(), corrected.bodies().inertial_parameters()
+    assert np.all(after[:, 0] < 1.1 * before[:, 0].sum()), "a link heavier than the arm"
+    sound = is_physically_consistent(before)
+    assert np.all(is_physically_consistent(after)[sound])
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_no_joint_is_worse_for_its_names_in_the_written_torque(arm, request) -> None:
+    result = request.getfixturevalue(arm)
+    table = holdout_table(result).to_pydict()
+    for j, joint in enumerate(result.corrected.joints):
+        measured = np.array(table[f"tau_measured_{j}"])
+        nominal, corrected = (measured - np.array(table[f"tau_{kind}_{j}"]) for kind in ("nominal", "corrected"))
+        assert np.mean(corrected**2) < np.mean(nominal**2), joint
+        fit = result.verdict.fit[j]
+        assert fit.nmse_named <= fit.nmse_nominal, joint
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
+def test_hum_is_told_once_at_most(arm, request) -> None:
+    assert sum("hum" in w for w in request.getfixturevalue(arm).verdict.warnings) <= 1
