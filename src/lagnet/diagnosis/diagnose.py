@@ -36,6 +36,8 @@ from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
 from lagnet.types import InverseDynamics
 
+MOST_JOINTS = 64  # a hundred take more than two gigabytes and minutes; humanoids have about thirty
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
@@ -99,8 +101,8 @@ def diagnose(
         seed: of everything random.
 
     Raises:
-        DiagnosisError: no recording, joints that are not the model's, or recordings in another convention (signs,
-            units, zeros of joints) than the model.
+        DiagnosisError: no recording, joints that are not the model's, more than 64 joints, or recordings in another
+            convention (signs, units, zeros of joints) than the model.
         RecordingError: data that would be named as physics: dead or stuck channels, another clock or order of joints.
     """
     _check(recordings, robot, holdout)
@@ -143,6 +145,11 @@ def _check(recordings: Sequence[Recording], robot: InverseDynamics, holdout: Seq
     if not recordings:
         raise DiagnosisError(
             "no recording was given", next_step="give at least one recording of joint motion and torque"
+        )
+    if robot.n_dof > MOST_JOINTS:
+        raise DiagnosisError(
+            f"the model has {robot.n_dof} joints; {MOST_JOINTS} at most are diagnosed together",
+            next_step="give a model of the part that moved, and recordings of its joints",
         )
     for recording in (*recordings, *(holdout or ())):
         if recording.n_dof != robot.n_dof:

@@ -181,3 +181,12 @@ def test_axes_need_no_unit_length(tmp_path):
     long = loaded(arm().replace('xyz="0 0 1"', 'xyz="0 3 4"'), tmp_path).inverse_dynamics(q, v, a)
     unit = loaded(arm().replace('xyz="0 0 1"', 'xyz="0 0.6 0.8"'), tmp_path).inverse_dynamics(q, v, a)
     assert np.allclose(long, unit, atol=1e-12)
+
+
+def test_a_robot_of_two_thousand_joints_is_refused_before_its_tables_are_made(tmp_path) -> None:
+    links = "".join(LINK.format(f"l{i}") for i in range(2001))
+    joints = "".join(JOINT.format(f"j{i}", "revolute", f"l{i}", f"l{i + 1}") for i in range(2000))
+    path = tmp_path / "chain.urdf"
+    path.write_text(f'<robot name="chain">{links}{joints}</robot>')
+    with pytest.raises(RobotError, match="2000 moving joints, more than 256"):
+        load_description(path)

@@ -10,14 +10,21 @@ from lagnet.rigid_body.untyped_pinocchio import Model, pin
 
 SINGULAR = 1e-10  # of the largest eigenvalue of a mass matrix scaled to a unit diagonal; real arms stay above 1e-4
 POSES = 5
+MOST_JOINTS = 256  # tables grow as the square: two thousand joints take more than a gigabyte
 
 
 def mass_warnings(model: Model, where: str) -> list[str]:
     """Warnings on bodies without mass and on a mass matrix without inverse.
 
     Raises:
-        RobotError: a joint with nothing that has mass behind it.
+        RobotError: a joint with nothing that has mass behind it, or more than 256 joints.
     """
+    if model.nv > MOST_JOINTS:
+        raise RobotError(
+            f"has {model.nv} moving joints, more than {MOST_JOINTS}",
+            where=where,
+            next_step="give a model of the part that moves, other joints fixed",
+        )
     _check_subtrees(model, where)
     warnings = []
     for i in range(1, model.njoints):
