@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lagnet.comparison.compare import Comparison, compare, to_json, write_comparison
+from lagnet.comparison.compare import Comparison, compare
+from lagnet.comparison.writing import lines, short_names, to_json, write_comparison
 from lagnet.errors import LagnetError
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm
-from lagnet.rigid_body.robot import Robot
+from lagnet.rigid_body.robot import Robot, load_description
 
 ARM = random_arm(3, seed=5, kinds=("revolute",), fixed=False)
 RATE = 100.0
@@ -97,6 +98,8 @@ def test_one_model_or_other_joints_are_refused() -> None:
     recording = recorded(ARM, 5.0)
     with pytest.raises(LagnetError, match="nothing to compare"):
         compare([ARM], ["a"], [recording])
+    with pytest.raises(LagnetError, match="given twice"):
+        compare([ARM, ARM], ["a", "a"], [recording])
     with pytest.raises(LagnetError, match="other joints"):
         compare([ARM, random_arm(2, seed=1)], ["a", "b"], [recording])
 
@@ -107,3 +110,64 @@ def test_other_kinematics_are_compared_by_torque_alone() -> None:
     assert result.parameters is None
     assert "kinematics, gravity" in result.reason
     assert {result.names[j.best] for j in result.joints} == {"level"}
+
+
+def with_friction(path: Path, viscous: float, dry: float, rotor: float = 0.0) -> Robot:
+    """The arm as MJCF with one declared friction and rotor at every joint."""
+    ARM.write_mjcf(path)
+    text = path.read_text(encoding="utf-8")
+    declared = f'<joint damping="{viscous}" frictionloss="{dry}" armature="{rotor}" '
+    path.write_text(text.replace("<joint ", declared), encoding="utf-8")
+    return load_description(path)
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
+    """Two files with the same bodies whose friction disagrees by a factor of fifty; that of the first is true."""
+    folder = tmp_path_factory.mktemp("published")
+    sets = [with_friction(folder / "near.xml", 0.5, 0.3), with_friction(folder / "far.xml", 25.0, 0.006, 0.4)]
+    return compare(sets, ["near", "far"], [recorded(ARM)])
+
+
+def test_friction_that_the_files_declare_is_compared(published: Comparison) -> None:
+    assert published.as_published is not None
+    for joint in published.as_published:
+        assert published.names[joint.best] == "near"
+        assert joint.also == ()
+        assert joint.nmse[0] < 0.05 < 1.0 < joint.nmse[1]
+
+
+def test_the_recordings_say_what_friction_and_rotor_are(published: Comparison) -> None:
+    assert published.differences is not None
+    said = {d.parameter: d for d in published.differences}
+    truth = {"viscous friction": 0.5, "dry friction": 0.3, "rotor inertia": 0.0}
+    for joint in ARM.joints:
+        for kind, value in truth.items():
+            entry = said.get(f"{kind}({joint})")
+            if entry is None:  # a rotor on the first, upright joint is told with the bodies
+                assert kind == "rotor inertia"
+                continue
+            assert entry.resolved
+            assert entry.nearest == 0
+            assert abs(entry.estimate - value) < max(4.0 * entry.error, 0.02)
+
+
+def test_the_terminal_says_which_set_the_recordings_agree_with(published: Comparison) -> None:
+    said = "\n".join(lines(published))
+    assert "as published, with the friction that each set declares instead" in said
+    assert f"best as published: near on {', '.join(ARM.joints)}" in said
+    line = next(line for line in said.splitlines() if line.startswith(f"  viscous friction({ARM.joints[1]})"))
+    assert "near 0.5, far 25 N m s/rad" in line
+    assert line.endswith(": near")
+
+
+def test_sets_that_a_standing_joint_cannot_tell_are_not_told() -> None:
+    sets = [heavier(ARM, 0, 0.3), ARM]
+    said = list(lines(compare(sets, ["heavy", "right"], [recorded(ARM, 20.0, (0.0, 1.0, 1.0))])))
+    assert any(line.startswith("to record: ") for line in said)
+    assert any("best: " in line and "alike on" in line for line in said)
+
+
+def test_names_are_as_short_as_they_stay_apart() -> None:
+    assert short_names(["x/a/arm.urdf", "x/b/arm.urdf"]) == ("a/arm.urdf", "b/arm.urdf")
+    assert short_names(["x/a.urdf", "ur5"]) == ("a.urdf", "ur5")

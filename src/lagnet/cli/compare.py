@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.errors import LagnetError
+
+if TYPE_CHECKING:
+    from lagnet.recordings.recording import Recording
 
 
 def command(
-    recordings: Annotated[list[Path], typer.Argument(help="Recordings with torque.")],
+    recordings: Annotated[list[Path], typer.Argument(help="Recordings with torque, or of commands alone.")],
     robot: Annotated[list[str], typer.Option(help="A parameter set: URDF, MJCF, name or folder; repeatable.")],
     hold: Annotated[str | None, typer.Option(help=HELP)] = None,
     columns: Annotated[
@@ -20,33 +24,51 @@ def command(
     torque_constant: Annotated[
         str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
     ] = None,
+    actuator: Annotated[
+        list[Path] | None,
+        typer.Option(help="Servos (TOML) where commands alone were recorded: one for all sets, or one for each."),
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("comparison"),
     seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
 ) -> None:
-    """Say which of several parameter sets explains recordings better, joint by joint."""
+    """Say which of several parameter sets explains recordings better, joint by joint.
+
+    Recordings of torque are compared by torque, recordings of commands alone by motion: then a set is a robot with its
+    servos, those of an MJCF's position actuators or of --actuator.
+    """
+    from lagnet.cli.parts.motion import route_of
     from lagnet.cli.shared.console import numbers, say
-    from lagnet.comparison.compare import compare, write_comparison
+    from lagnet.comparison.compare import compare
+    from lagnet.comparison.writing import lines, write_comparison
     from lagnet.recordings.loading.load import load_recording
 
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
     models = load_models(robot, hold)
     read = [load_recording(p, robot=models[0], columns=columns, torque_constant=constants) for p in recordings]
-    result = compare(models, robot, read, seed)
-    for joint in result.joints:
-        others = [
-            f"{name} {100 * joint.nmse[m]:.3g} % [{100 * joint.interval[m, 0]:.3g}, {100 * joint.interval[m, 1]:.3g}]"
-            for m, name in enumerate(result.names)
-        ]
-        tied = [result.names[m] for m in joint.also]
-        best = result.names[joint.best] + (f", not told from {', '.join(tied)}" if tied else "")
-        say(f"{joint.joint}: best {best}; error {'; '.join(others)}")
-    if result.parameters is None:
-        say(f"parameters are not compared: {result.reason}")
+    if route_of(None, read) == "motion":
+        result = _on_motion(models, robot, read, actuator or [], seed)
+    elif actuator:
+        raise LagnetError("the recordings hold torque, to which no servo matters", where="--actuator")
     else:
-        found = result.parameters
-        say(
-            f"the sets differ in {len(found.differing)} base parameters; these recordings resolve {len(found.resolved)}"
-        )
-        for entry in result.to_record[:5]:
-            say(f"to record: {entry.words()}")
+        result = compare(models, robot, read, seed)
+    for line in lines(result):
+        say(line)
     say(f"written: {write_comparison(result, out)}")
+
+
+def _on_motion(models: list[Any], robot: list[str], read: list[Recording], files: list[Path], seed: int) -> Any:
+    """Sets of robots and servos: one of either stands for all, else they go in pairs."""
+    from lagnet.comparison.motion import compare_motion, servo_driven
+    from lagnet.servos.servo_file import read_servo_file
+
+    if not files:
+        return compare_motion([servo_driven(m, n) for m, n in zip(models, robot, strict=True)], robot, read, seed)
+    count = max(len(models), len(files))
+    if not {len(models), len(files)} <= {1, count}:
+        what = f"{len(models)} robots and {len(files)} files of servos do not pair"
+        raise LagnetError(what, where="--actuator", next_step="give one for all, or one for each robot")
+    pairs = [(models[i % len(models)], robot[i % len(models)], files[i % len(files)]) for i in range(count)]
+    names = robot if len(files) == 1 else [str(f) if len(robot) == 1 else f"{r} with {f}" for _, r, f in pairs]
+    servos = [read_servo_file(f, m.joints, m.armature) for m, _, f in pairs]
+    sets = [servo_driven(m, n, s) for (m, n, _), s in zip(pairs, servos, strict=True)]
+    return compare_motion(sets, names, read, seed)

@@ -1,7 +1,8 @@
 """Torque errors of several models in blocks of time, so that tests count what is independent.
 
 Of every joint the terms that no set of inertial parameters holds (an offset, viscous and dry friction) are fitted
-beside each model, by block sums: SSE(w) = Σ w_b r_bᵀr_b − gᵀ G⁻¹ g with G = Σ w_b X_bᵀX_b, g = Σ w_b X_bᵀ r_b.
+beside each model, by block sums: SSE(w) = Σ w_b r_bᵀr_b − gᵀ G⁻¹ g with G = Σ w_b X_bᵀX_b, g = Σ w_b X_bᵀ r_b. With the
+friction f that a set declares, r − X f takes the place of r and the offset alone is fitted.
 """
 
 from __future__ import annotations
@@ -63,8 +64,8 @@ class BlockSums:
     """Sums over blocks of one joint.
 
     Args:
-        gram: shape (blocks, 3, 3), products of the columns beside.
-        moment: shape (blocks, models, 3), products of the columns with the errors.
+        gram: shape (blocks, 3, 3), products of the columns beside; (blocks, 1, 1) where the offset is alone.
+        moment: shape (blocks, models, 3 or 1), products of the columns with the errors.
         power: shape (blocks, models), squared errors.
         torque: shape (blocks,), squared torque about its mean.
     """
@@ -74,11 +75,19 @@ class BlockSums:
     power: np.ndarray
     torque: np.ndarray
 
+    def with_friction(self, friction: np.ndarray) -> BlockSums:
+        """Sums with declared friction taken off and the offset alone beside; friction (models, 2): viscous, dry."""
+        gram = self.gram[:, None, 1:, 1:]
+        taken = np.einsum("mi,bmi->bm", friction, self.moment[:, :, 1:])
+        again = np.einsum("mi,bmij,mj->bm", friction, np.broadcast_to(gram, (*taken.shape, 2, 2)), friction)
+        offset = self.moment[:, :, :1] - np.einsum("mi,bi->bm", friction, self.gram[:, 0, 1:])[:, :, None]
+        return BlockSums(self.gram[:, :1, :1], offset, self.power - 2.0 * taken + again, self.torque)
+
     def nmse(self, weights: np.ndarray) -> np.ndarray:
         """Normalised errors with blocks weighted, shapes (draws, blocks) → (draws, models)."""
         gram = np.einsum("wb,bij->wij", weights, self.gram)
         moment = np.einsum("wb,bmi->wmi", weights, self.moment)
-        ridge = 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(BESIDE)
+        ridge = 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[1])
         explained = np.einsum(
             "wmi,wmi->wm", moment, np.linalg.solve(gram + ridge, moment.transpose(0, 2, 1)).transpose(0, 2, 1)
         )

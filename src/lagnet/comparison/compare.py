@@ -2,49 +2,25 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lagnet.comparison.advice import Advice, advice
-from lagnet.comparison.blocks import block_length, block_sums, stretch_errors
+from lagnet.comparison.blocks import BlockSums, block_length, block_sums, stretch_errors
+from lagnet.comparison.differences import Difference
+from lagnet.comparison.joints import JointComparison, bootstrap_weights, judge_joint
 from lagnet.comparison.resolution import Resolution, resolution
 from lagnet.errors import LagnetError
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
-from lagnet.rigid_body.descriptions.writing import write_text
+from lagnet.rigid_body.declared_friction import declared_friction
 from lagnet.rigid_body.robot import Robot
 
-DRAWS = 2000
-LEVEL = (2.5, 97.5)  # percentiles of an interval
-SCHEMA, FILE = "lagnet-compare/1", "compare.json"
 ALIKE = 1e-6  # of the torque: two models of one kinematics differ by their parameters alone
-
-
-@dataclass(frozen=True, eq=False)
-class JointComparison:
-    """One joint.
-
-    Args:
-        joint: name.
-        nmse: shape (models,), error over the torque's scatter, friction and offset fitted beside each.
-        interval: shape (models, 2), 95 %.
-        against_best: shape (models, 2), 95 % of a model's error less that of the best.
-        best: index of the model with the smallest error.
-        also: indices of models that are not told from it.
-    """
-
-    joint: str
-    nmse: np.ndarray
-    interval: np.ndarray
-    against_best: np.ndarray
-    best: int
-    also: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,23 +29,53 @@ class Comparison:
 
     Args:
         names: of the models.
-        joints: one comparison a joint.
+        joints: one comparison a joint, of the bodies: offset, viscous and dry friction are fitted beside each model.
+        as_published: the same with the friction that each model declares itself; None where none declares any.
         blocks: how many pieces of time the intervals rest on.
-        parameters: base parameters of the sets; None where the models are no robots of one kinematics.
+        parameters: parameters of the sets; None where the models are no robots of one kinematics.
         reason: why there are none, else "".
         to_record: what would decide the rest.
     """
 
     names: tuple[str, ...]
     joints: tuple[JointComparison, ...]
+    as_published: tuple[JointComparison, ...] | None
     blocks: int
     parameters: Resolution | None
     reason: str
     to_record: tuple[Advice, ...]
 
+    @property
+    def differences(self) -> tuple[Difference, ...] | None:
+        """Every parameter in which the sets differ, those that stand out most first."""
+        found = self.parameters
+        if found is None:
+            return None
+        said, error = found.estimate.tolist(), found.error.tolist()
+        out = [
+            Difference(found.names[k], found.unit(k), tuple(found.values[:, k].tolist()), said[k], error[k])
+            for k in found.differing.tolist()
+        ]
+        return tuple(sorted(out, key=lambda d: -d.errors_apart))
+
+
+def check_models(models: Sequence[Any], names: Sequence[str]) -> None:
+    """Refuses what cannot be compared.
+
+    Raises:
+        LagnetError: fewer than two models, one of them twice, or other joints.
+    """
+    if len(models) < 2:
+        raise LagnetError("one model is nothing to compare", where="--robot", next_step="give at least two")
+    for i, (model, name) in enumerate(zip(models, names, strict=True)):
+        if name in names[:i]:
+            raise LagnetError(f"{name} is given twice", where="--robot", next_step="give sets that differ")
+        if tuple(model.joints) != tuple(models[0].joints):
+            raise LagnetError(f"{name} has other joints than {names[0]}", where="--robot", choices=models[0].joints)
+
 
 def compare(models: Sequence[Any], names: Sequence[str], recordings: Sequence[Recording], seed: int = 0) -> Comparison:
-    """Hold several models of one robot against recordings.
+    """Hold several models of one robot against recordings of torque.
 
     Args:
         models: robots, corrected or learned models with the same joints.
@@ -78,41 +84,38 @@ def compare(models: Sequence[Any], names: Sequence[str], recordings: Sequence[Re
         seed: of the bootstrap and of poses that are tried.
 
     Raises:
-        LagnetError: fewer than two models, or other joints.
+        LagnetError: fewer than two models, one of them twice, other joints, or no torque.
     """
-    if len(models) < 2:
-        raise LagnetError("one model is nothing to compare", where="--robot", next_step="give at least two")
-    for model, name in zip(models, names, strict=True):
-        if tuple(model.joints) != tuple(models[0].joints):
-            raise LagnetError(f"{name} has other joints than {names[0]}", where="--robot", choices=models[0].joints)
+    check_models(models, names)
     conditioned = condition(recordings)
     parts = stretch_errors(models, conditioned)
     if not parts:
         raise LagnetError("no recording is long enough to compare on", next_step="give some seconds of motion")
-    length = block_length(parts, conditioned.rate)
+    length, every = block_length(parts, conditioned.rate), models[0].joints
     sums = [block_sums(parts, j, length) for j in range(models[0].n_dof)]
     blocks = len(sums[0].torque)
-    weights = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=DRAWS).astype(float)
-    joints = tuple(
-        _joint(name, s.nmse(np.ones((1, blocks)))[0], s.nmse(weights))
-        for name, s in zip(models[0].joints, sums, strict=True)
-    )
+    weights = bootstrap_weights(blocks, seed)
+    joints = tuple(_joint(name, s, weights) for name, s in zip(every, sums, strict=True))
+    friction = np.array([declared_friction(m) if isinstance(m, Robot) else np.zeros((m.n_dof, 2)) for m in models])
+    published = None
+    if friction.any():
+        own = [s.with_friction(friction[:, j]) for j, s in enumerate(sums)]
+        published = tuple(_joint(name, s, weights) for name, s in zip(every, own, strict=True))
     robots, reason = _one_kinematics(models)
     if robots is None:
-        return Comparison(tuple(names), joints, blocks, None, reason, ())
-    found = resolution(robots, parts, conditioned, length)
+        return Comparison(tuple(names), joints, published, blocks, None, reason, ())
+    if not all(isinstance(m, Robot) for m in models):
+        friction[:] = 0.0  # a corrected model's own friction is no number of its file
+    found = resolution(robots, parts, conditioned, length, friction)
     noise = np.array([np.sqrt(j.nmse[j.best]) for j in joints]) * np.std(
         np.concatenate([p.torque for p in parts]), axis=0
     )
-    return Comparison(tuple(names), joints, blocks, found, "", advice(robots[0], found, noise, seed))
+    to_record = advice(robots[0], found, noise, seed)
+    return Comparison(tuple(names), joints, published, blocks, found, "", to_record)
 
 
-def _joint(name: str, nmse: np.ndarray, draws: np.ndarray) -> JointComparison:
-    best = int(np.argmin(nmse))
-    interval = np.percentile(draws, LEVEL, axis=0).T
-    worse = np.percentile(draws - draws[:, [best]], LEVEL, axis=0).T
-    also = tuple(int(m) for m in range(len(nmse)) if m != best and worse[m, 0] <= 0.0)
-    return JointComparison(name, nmse, interval, worse, best, also)
+def _joint(name: str, sums: BlockSums, weights: np.ndarray) -> JointComparison:
+    return judge_joint(name, sums.nmse(np.ones((1, weights.shape[1])))[0], sums.nmse(weights))
 
 
 def _one_kinematics(models: Sequence[Any]) -> tuple[list[Robot] | None, str]:
@@ -134,65 +137,3 @@ def _one_kinematics(models: Sequence[Any]) -> tuple[list[Robot] | None, str]:
 
 def _bodies(model: Any) -> Any:
     return model.bodies() if isinstance(model, CorrectedModel) and hasattr(model, "inertial_parameters") else model
-
-
-def to_json(result: Comparison) -> dict[str, Any]:
-    """Plain data."""
-    out: dict[str, Any] = {
-        "schema": SCHEMA,
-        "models": list(result.names),
-        "blocks": result.blocks,
-        "joints": [
-            {
-                "joint": j.joint,
-                "best": result.names[j.best],
-                "not_told_from_best": [result.names[m] for m in j.also],
-                "models": [
-                    {
-                        "model": result.names[m],
-                        "nmse": float(j.nmse[m]),
-                        "ci95": [float(x) for x in j.interval[m]],
-                        "above_best_ci95": [float(x) for x in j.against_best[m]],
-                    }
-                    for m in range(len(result.names))
-                ],
-            }
-            for j in result.joints
-        ],
-        "parameters": None if result.parameters is None else _parameters(result.names, result.parameters),
-        "parameters_missing_because": result.reason or None,
-        "to_record": [{"words": a.words(), "enough": a.is_enough} | _plain(a) for a in result.to_record],
-    }
-    return out
-
-
-def _plain(entry: Advice) -> dict[str, Any]:
-    return {
-        "parameter": entry.parameter,
-        "motion": entry.motion,
-        "joint": entry.joint,
-        "pose_rad": list(entry.pose),
-        "difference_nm": entry.difference,
-        "noise_nm": entry.noise,
-    }
-
-
-def _parameters(names: tuple[str, ...], found: Resolution) -> list[dict[str, Any]]:
-    resolved = set(found.resolved.tolist())
-    return [
-        {
-            "parameter": found.names[k],
-            "values": {name: float(found.values[m, k]) for m, name in enumerate(names)},
-            "recordings_say": None if not np.isfinite(found.estimate[k]) else float(found.estimate[k]),
-            "standard_error": None if not np.isfinite(found.error[k]) else float(found.error[k]),
-            "resolved": k in resolved,
-        }
-        for k in found.differing.tolist()
-    ]
-
-
-def write_comparison(result: Comparison, folder: str | Path) -> Path:
-    """Writes `compare.json`."""
-    path = Path(folder) / FILE
-    write_text(path, json.dumps(to_json(result), indent=1, allow_nan=False) + "\n")
-    return path
