@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import time
 from collections.abc import Callable
@@ -79,6 +80,8 @@ def study(case: Halves) -> dict[str, Any]:
     rows = []
     for key in sorted(found[0].keys() & found[1].keys()):
         (a, *of_a), (b, *of_b) = found[0][key], found[1][key]
+        if of_a[0] == of_a[1] and of_b[0] == of_b[1]:
+            continue  # a choice, such as the sense of a coupling, has no interval
         rows.append(
             {
                 "parameter": list(key),
@@ -92,11 +95,23 @@ def study(case: Halves) -> dict[str, Any]:
 
 
 def summary(results: dict[str, Any]) -> dict[str, Any]:
-    """Of all intervals, the share that holds the other half's estimate, for each set and over all."""
+    """Share of intervals that hold the other half's estimate; share of differences within √(a² + b²) of both widths."""
     held = {name: [h for p in r["parameters"] for h in p["holds"]] for name, r in results.items()}
     every = [h for part in held.values() for h in part]
+    near = [_agree(p) for r in results.values() for p in r["parameters"]]
     by_arm = {name: {"intervals": len(h), "held": sum(h)} for name, h in held.items()}
-    return {"intervals": len(every), "held": sum(every), "share": sum(every) / len(every), "by_arm": by_arm}
+    return {
+        "intervals": len(every),
+        "held": sum(every),
+        "share": sum(every) / len(every),
+        "differences_within_both_intervals": sum(near) / len(near),
+        "by_arm": by_arm,
+    }
+
+
+def _agree(row: dict[str, Any]) -> bool:
+    (a, b), widths = row["values"], row["half_widths"]
+    return abs(a - b) <= math.hypot(*widths)
 
 
 def main() -> None:
