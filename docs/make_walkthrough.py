@@ -85,8 +85,8 @@ def draw_hypotheses(axes: Any, case: Case, result: Diagnosis) -> None:
     state = result.state
     view = views_of(state.equations, state.selection)[JOINT]
     library = state.library
-    whole = view.loss(())[0]
-    left = {i: view.loss((i,))[0] / whole for i in library.local[JOINT]}
+    whole = view.error(())
+    left = {i: view.error((i,)) / whole for i in library.local[JOINT]}
     best: dict[str, float] = {}
     for i, share in left.items():
         best[library.hypotheses[i].effect] = min(share, best.get(library.hypotheses[i].effect, np.inf))
