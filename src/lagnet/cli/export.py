@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lagnet.errors import LagnetError
+
+if TYPE_CHECKING:
+    from lagnet.simulators.exporter import Place
 
 
 def command(
@@ -51,11 +54,29 @@ def command(
     joints = written.arm.robot.joints
     for effect, place in written.places:
         where = "whole arm" if effect.joint is None else joints[effect.joint]
-        words = place.element or place.note
-        say(f"{effect.effect} ({where}): {place.status.replace('_', ' ')}: {words}")
+        say(f"{effect.effect} ({where}): {_words(exporter.name, effect.effect, place)}")
+    for part, place in written.identified:
+        alike = "" if part.alike is None else part.alike.effect
+        say(f"identified {part.kind} ({joints[part.joint]}): {_words(exporter.name, alike, place)}")
+    if written.remainder is not None:
+        say(f"learned remainder: {_words(exporter.name, '', written.remainder)}")
     if result is not None:
         for i, joint in enumerate(joints):
             after = (result["after"] or result["before"])["rmse"][i]
-            before, gap = result["before"]["rmse"][i], result["engine_against_corrected_rmse"][i]
-            say(f"{joint}: error in {to} {before:.3g} before, {after:.3g} after; to the corrected model {gap:.2g} rad")
+            before, gap, unit = (
+                result["before"]["rmse"][i],
+                result["engine_against_corrected_rmse"][i],
+                result["units"][i],
+            )
+            against = f"to what was measured {before:.3g} {unit} before, {after:.3g} after"
+            say(f"{joint}: error of {exporter.engine} {against}; to the corrected model {gap:.2g}")
     say(f"written: {written.files[0]} and {listed}")
+
+
+def _words(exporter: str, effect: str, place: Place) -> str:
+    """Status, the measured error of what is approximate, and element or reason."""
+    from lagnet.simulators.measured import measured_errors
+
+    measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
+    off = "".join(f", {100 * share:.2g} % off in {engine}" for engine, share in measured.items())
+    return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"
