@@ -25,11 +25,14 @@ def command(
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
+    torque_constant: Annotated[
+        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
+    ] = None,
     kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
     kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
-    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.console import numbers, say
     from lagnet.cli.shared.replays import servo_of
     from lagnet.models.files.loading import load_any
     from lagnet.recordings.loading.load import load_recording
@@ -48,7 +51,8 @@ def command(
     result = None
     if verify and exporter.engine is not None:
         settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd))
-        read = [load_recording(p, robot=model, columns=columns) for p in verify]
+        constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
+        read = [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in verify]
         result = verified_by(model, read, settings)
     listed = write_export_json(written, out, result)
     joints = written.arm.robot.joints
