@@ -10,6 +10,7 @@ import typer
 from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
+    from lagnet.simulators.export import Export
     from lagnet.simulators.exporter import Place
 
 
@@ -59,9 +60,9 @@ def command(
     for effect, place in written.places:
         where = "whole arm" if effect.joint is None else joints[effect.joint]
         say(f"{effect.effect} ({where}): {_words(exporter.name, effect.effect, place)}")
-    for part, place in written.identified:
-        alike = "" if part.alike is None else part.alike.effect
-        say(f"identified {part.kind} ({joints[part.joint]}): {_words(exporter.name, alike, place)}")
+    for (kind, words), where in _identified(written).items():
+        said = "every joint" if len(where) == len(joints) > 1 else ", ".join(where)
+        say(f"identified {kind} ({said}): {words}")
     if written.remainder is not None:
         say(f"learned remainder: {_words(exporter.name, '', written.remainder)}")
     if result is not None:
@@ -77,10 +78,22 @@ def command(
     say(f"written: {written.files[0]} and {listed}")
 
 
+def _identified(written: Export) -> dict[tuple[str, str], list[str]]:
+    """Joints of the identified parts, by their kind and what became of them."""
+    out: dict[tuple[str, str], list[str]] = {}
+    for part, place in written.identified:
+        alike = "" if part.alike is None else part.alike.effect
+        key = part.kind.replace("_", " "), _words(written.exporter.name, alike, place)
+        joint, where = written.arm.robot.joints[part.joint], out.setdefault(key, [])
+        if joint not in where:  # a joint has several bristles
+            where.append(joint)
+    return out
+
+
 def _words(exporter: str, effect: str, place: Place) -> str:
     """Status, the measured error of what is approximate, and element or reason."""
     from lagnet.simulators.measured import measured_errors
 
     measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
-    off = "".join(f", {100 * share:.2g} % off in {engine}" for engine, share in measured.items())
+    off = "".join(f", {100 * share:.3g} % off in {engine}" for engine, share in measured.items())
     return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"
