@@ -10,7 +10,9 @@ import pytest
 
 from lagnet.cli.main import BAD_INPUT, DONE, main
 from lagnet.models.corrected.folder import save_corrected
+from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm
@@ -56,6 +58,32 @@ def test_export_verifies_in_the_engine(folder: Path, tmp_path: Path, capsys: pyt
     said = capsys.readouterr().out
     assert "coulomb_friction (joint_1): exact: joint frictionloss" in said
     assert (tmp_path / "model.xml").is_file()
+
+
+def test_what_was_identified_is_told_once_a_kind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    terms = tuple(MotionTerm(kind, j) for j in range(2) for kind in ("viscous", "dry", "lag"))
+    layer = IdentifiedLayer(None, terms, np.array([0.3, 0.2, 0.1, 0.4, -0.2, 0.1]), Rest(np.full(2, 1e-3), np.zeros(2)))
+    save_corrected(CorrectedModel(ARM, (), np.full(2, 1e-3), identified=layer), tmp_path / "corrected")
+    assert main(["export", str(tmp_path / "corrected"), "--to", "urdf", "--out", str(tmp_path / "out")]) == DONE
+    said = capsys.readouterr().out
+    assert "identified viscous (every joint): exact: joint dynamics damping" in said
+    assert "identified dry (joint_0): approximate, 0.823 % off in mujoco, 100 % off in pybullet: joint" in said
+    assert "identified dry (joint_1): not representable: the sum with what is named would be below zero" in said
+    assert "identified lag (every joint): not representable: no law of a simulator" in said
+
+
+def test_recordings_of_current_are_replayed_with_their_constants(folder: Path, tmp_path: Path) -> None:
+    header, *rows = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "run.csv").write_text("\n".join([header.replace("tau_", "current_"), *rows]), encoding="utf-8")
+    found = {}
+    for name, file, more in (
+        ("torque", folder / "run.csv", []),
+        ("current", tmp_path / "run.csv", ["--torque-constant", "1,1"]),
+    ):
+        words = ["replay", str(file), "--robot", str(folder / "arm.urdf"), "--longest", "1", *more]
+        assert main([*words, "--out", str(tmp_path / name)]) == DONE
+        found[name] = json.loads((tmp_path / name / "replay.json").read_text(encoding="utf-8"))["before"]["rmse"]
+    assert found["current"] == found["torque"]
 
 
 def test_replay_writes_before_and_after(folder: Path, tmp_path: Path) -> None:

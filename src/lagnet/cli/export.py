@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lagnet.errors import LagnetError
+
+if TYPE_CHECKING:
+    from lagnet.simulators.export import Export
+    from lagnet.simulators.exporter import Place
 
 
 def command(
@@ -22,11 +26,14 @@ def command(
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
+    torque_constant: Annotated[
+        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
+    ] = None,
     kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
     kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
-    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.console import numbers, say
     from lagnet.cli.shared.replays import servo_of
     from lagnet.models.files.loading import load_any
     from lagnet.recordings.loading.load import load_recording
@@ -45,17 +52,48 @@ def command(
     result = None
     if verify and exporter.engine is not None:
         settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd))
-        read = [load_recording(p, robot=model, columns=columns) for p in verify]
+        constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
+        read = [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in verify]
         result = verified_by(model, read, settings)
     listed = write_export_json(written, out, result)
     joints = written.arm.robot.joints
     for effect, place in written.places:
         where = "whole arm" if effect.joint is None else joints[effect.joint]
-        words = place.element or place.note
-        say(f"{effect.effect} ({where}): {place.status.replace('_', ' ')}: {words}")
+        say(f"{effect.effect} ({where}): {_words(exporter.name, effect.effect, place)}")
+    for (kind, words), where in _identified(written).items():
+        said = "every joint" if len(where) == len(joints) > 1 else ", ".join(where)
+        say(f"identified {kind} ({said}): {words}")
+    if written.remainder is not None:
+        say(f"learned remainder: {_words(exporter.name, '', written.remainder)}")
     if result is not None:
         for i, joint in enumerate(joints):
             after = (result["after"] or result["before"])["rmse"][i]
-            before, gap = result["before"]["rmse"][i], result["engine_against_corrected_rmse"][i]
-            say(f"{joint}: error in {to} {before:.3g} before, {after:.3g} after; to the corrected model {gap:.2g} rad")
+            before, gap, unit = (
+                result["before"]["rmse"][i],
+                result["engine_against_corrected_rmse"][i],
+                result["units"][i],
+            )
+            against = f"to what was measured {before:.3g} {unit} before, {after:.3g} after"
+            say(f"{joint}: error of {exporter.engine} {against}; to the corrected model {gap:.2g}")
     say(f"written: {written.files[0]} and {listed}")
+
+
+def _identified(written: Export) -> dict[tuple[str, str], list[str]]:
+    """Joints of the identified parts, by their kind and what became of them."""
+    out: dict[tuple[str, str], list[str]] = {}
+    for part, place in written.identified:
+        alike = "" if part.alike is None else part.alike.effect
+        key = part.kind.replace("_", " "), _words(written.exporter.name, alike, place)
+        joint, where = written.arm.robot.joints[part.joint], out.setdefault(key, [])
+        if joint not in where:  # a joint has several bristles
+            where.append(joint)
+    return out
+
+
+def _words(exporter: str, effect: str, place: Place) -> str:
+    """Status, the measured error of what is approximate, and element or reason."""
+    from lagnet.simulators.measured import measured_errors
+
+    measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
+    off = "".join(f", {100 * share:.3g} % off in {engine}" for engine, share in measured.items())
+    return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"

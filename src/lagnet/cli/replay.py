@@ -20,6 +20,9 @@ def command(
     columns: Annotated[
         Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
     ] = None,
+    torque_constant: Annotated[
+        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
+    ] = None,
     kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
     kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
     tolerance: Annotated[float, typer.Option(help="Error at which a rollout has left the recording [rad].")] = 0.05,
@@ -28,7 +31,7 @@ def command(
     """Run recordings through a model in an engine, before and after correction."""
     if tolerance <= 0 or longest <= 0:
         raise LagnetError("the tolerance and the length to replay are above zero", where="--tolerance, --longest")
-    from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.console import numbers, say
     from lagnet.cli.shared.replays import say_replay, servo_of
     from lagnet.recordings.loading.load import load_recording
     from lagnet.reports.replay_report import write_replay_report
@@ -36,7 +39,8 @@ def command(
     from lagnet.simulators.replay import ReplaySettings
 
     (model,) = load_models([robot], hold)
-    read = [load_recording(p, robot=model, columns=columns) for p in recordings]
+    constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
+    read = [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in recordings]
     settings = ReplaySettings(engine=engine, tolerance=tolerance, longest=longest, servo=servo_of(kp, kd))
     result = before_and_after(model, read, settings)
     summary, table = write_replay(result, out)

@@ -20,7 +20,9 @@ from lagnet.diagnosis.motion.joint.fitting import (
 )
 from lagnet.servos.parameters import LAW, NO_LIMIT
 
+ITERATIONS = 25  # of a fit from each set: published values are far from each other
 SAME = 1e-9  # of a parameter's size: no difference
+STEPS = 2.0  # times half an encoder step, by which a direction moves the joint that is shown
 ALONG = 1e-3  # share of a parameter in a direction that is not shown, from which it is not shown itself
 
 
@@ -31,7 +33,7 @@ def joint_differences(joint: str, data: JointData, laws: np.ndarray, best: int) 
         joint: its name.
         data: rollouts with the bodies of the best set.
         laws: of all sets.
-        best: the set from which the fit starts.
+        best: the set whose other parameters are kept; the fit starts from the values of each.
     """
     size = np.max(np.abs(laws), axis=0)
     at = [k for k in range(len(LAW)) if np.ptp(laws[:, k]) > SAME * max(float(size[k]), 1e-12)]
@@ -40,9 +42,12 @@ def joint_differences(joint: str, data: JointData, laws: np.ndarray, best: int) 
     limited = np.where(size >= NO_LIMIT, np.min(np.abs(laws), axis=0), size)
     coordinates = Coordinates(tuple((LAW[k].name,) for k in at), limited[at])
     floor = max(0.5 * encoder_step(data.series.q), LEAST_ERROR)
-    start = laws[best]
-    scale = robust_scale(data.errors(start), floor)
-    fitted = fit_law(data, start, coordinates, scale=scale, patient=True)
+    starts = [coordinates.write(laws[best], laws[m, at])[0] for m in range(len(laws))]
+    scale = robust_scale(data.errors(laws[best]), floor)
+    fits = [fit_law(data, law, coordinates, scale=scale, iterations=ITERATIONS, patient=True) for law in starts]
+    fitted = min(fits, key=lambda fit: fit.cost)
+    scale = robust_scale(fitted.residual, floor)
+    fitted = fit_law(data, fitted.law, coordinates, scale=scale, iterations=ITERATIONS, patient=True)
     scale = robust_scale(fitted.residual, floor)
     error = standard_errors(data, fitted.law, coordinates, scale, floor)
     return [
@@ -74,7 +79,7 @@ def standard_errors(
     weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * scale))
     normal = (jacobian * weight[:, None]).T @ jacobian
     strength, axes = np.linalg.eigh(normal)
-    shown = strength > floor**2 * float(weight.sum())
+    shown = strength > (STEPS * floor) ** 2 * float(weight.sum())
     if not shown.any():
         return np.full(len(normal), np.inf)
     inverse = (axes[:, shown] / strength[shown]) @ axes[:, shown].T

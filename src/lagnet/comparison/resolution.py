@@ -91,7 +91,7 @@ def resolution(
         friction: shape (sets, dof, 2), viscous and dry friction that each set declares.
     """
     base = base_parameters(robots[0])
-    folded, rotors = _folded_rotors(robots[0], base)
+    folded, rotors = folded_rotors(robots[0], base)
     table = _Table(robots[0], base, rotors, conditioned)
     shift, covariance = _fit(table, parts, length, _noise(parts))
     armature = np.array([r.armature for r in robots])
@@ -107,7 +107,7 @@ def resolution(
     return Resolution(names, values, estimate, error, base, beside)
 
 
-def _folded_rotors(robot: Robot, base: BaseParameters) -> tuple[np.ndarray, list[int]]:
+def folded_rotors(robot: Robot, base: BaseParameters) -> tuple[np.ndarray, list[int]]:
     """Base parameters that give a rotor's torque, shape (dof, rank), and joints whose rotor none give."""
     q, v, a = np.random.default_rng(0).uniform(-1.5, 1.5, (3, 20 + 10 * robot.n_dof, robot.n_dof))
     table = base.reduce(robot.joint_torque_regressor(q, v, a)).reshape(-1, base.rank)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,8 @@ from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
-from lagnet.simulators.exporter import Exporter, Place
+from lagnet.simulators.corrected_arm.identified_parts import IdentifiedPart
+from lagnet.simulators.exporter import LEARNED, Exporter, Place, nowhere
 from lagnet.simulators.measured import measured_errors
 
 FILE = "export.json"
@@ -30,13 +31,16 @@ class Export:
         arm: the physics that was written.
         files: the model first.
         places: every named effect with its place, in the order of the model.
+        identified: every part of the identified layer with its place.
+        remainder: the place of a learned remainder; None where the model has none.
     """
 
     exporter: Exporter
     arm: ArmPhysics
     files: tuple[Path, ...]
     places: tuple[tuple[NamedEffect, Place], ...]
-    verified: Mapping[str, Any] = field(default_factory=dict)
+    identified: tuple[tuple[IdentifiedPart, Place], ...] = ()
+    remainder: Place | None = None
 
     @property
     def left_out(self) -> tuple[tuple[NamedEffect, Place], ...]:
@@ -54,7 +58,10 @@ def export_model(model: Robot | CorrectedModel, exporter: Exporter, folder: str 
     out.mkdir(parents=True, exist_ok=True)
     arm = arm_physics(model)
     files = exporter.write(arm, out)
-    return Export(exporter, arm, files, tuple((e, exporter.place(e)) for e in all_effects(model)))
+    places = tuple((e, exporter.place(e)) for e in all_effects(model))
+    identified = tuple((p, nowhere(p.reason) if p.alike is None else exporter.place(p.alike)) for p in arm.identified)
+    learned = LEARNED if isinstance(model, CorrectedModel) and model.remainder is not None else None
+    return Export(exporter, arm, files, places, identified, learned)
 
 
 def all_effects(model: Any) -> tuple[NamedEffect, ...]:
@@ -80,6 +87,8 @@ def write_export_json(export: Export, folder: str | Path, verified: Mapping[str,
         "joints": list(joints),
         "files": [p.name for p in export.files],
         "effects": [_entry(export.exporter, e, p, joints) for e, p in export.places],
+        "identified": [_identified_entry(export.exporter, i, p, joints) for i, p in export.identified],
+        "remainder": None if export.remainder is None else _place(export.remainder),
         "friction_at_rest": {
             "blur": [float(x) for x in export.arm.blur],
             "unit": "rad/s",
@@ -92,13 +101,31 @@ def write_export_json(export: Export, folder: str | Path, verified: Mapping[str,
 
 
 def _entry(exporter: Exporter, effect: NamedEffect, place: Place, joints: tuple[str, ...]) -> dict[str, Any]:
-    measured = measured_errors(exporter.name, effect.effect) if place.status != "not_representable" else {}
     return {
         "effect": effect.effect,
         "joint": None if effect.joint is None else joints[effect.joint],
         "parameters": effect.parameters(),
+        **_place(place, exporter, effect.effect),
+    }
+
+
+def _identified_entry(
+    exporter: Exporter, part: IdentifiedPart, place: Place, joints: tuple[str, ...]
+) -> dict[str, Any]:
+    return {
+        "identified": part.kind,
+        "joint": joints[part.joint],
+        "parameters": part.values,
+        "acts_like": None if part.alike is None else part.alike.effect,
+        **_place(place, exporter, "" if part.alike is None else part.alike.effect),
+    }
+
+
+def _place(place: Place, exporter: Exporter | None = None, effect: str = "") -> dict[str, Any]:
+    somewhere = place.status != "not_representable"
+    return {
         "status": place.status,
         "element": place.element or None,
-        "note" if place.status != "not_representable" else "reason": place.note,
-        "measured_error": dict(measured) or None,
+        "note" if somewhere else "reason": place.note,
+        "measured_error": (dict(measured_errors(exporter.name, effect)) or None) if exporter and somewhere else None,
     }

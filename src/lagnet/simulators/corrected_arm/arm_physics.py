@@ -1,4 +1,4 @@
-"""What a corrected model says of an arm that moves forward: the named effects as the numbers that a simulator needs.
+"""What a corrected model says of an arm that moves forward: its effects as the numbers that a simulator needs.
 
 The catalogue states effects as torques that are added to a nominal model along a recorded motion. A simulator wants the
 other direction: what passes between the command and the joint, what acts at the joint, and what the bodies are.
@@ -16,10 +16,12 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import ModelError
 from lagnet.models.corrected.changed_bodies import apply_to_bodies
+from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulators.corrected_arm.drive import Drive
+from lagnet.simulators.corrected_arm.identified_parts import IdentifiedPart, changed_robot, term_part
 from lagnet.types import JointVector
 
 IN_BODIES = ("payload", "link_inertia", "gravity_tilt")
@@ -82,6 +84,7 @@ class ArmPhysics:
         drives: what lies between a commanded torque and the joint, one for each joint.
         blur: shape (dof,), speed within which the recordings did not tell the sign of the motion [rad/s].
         passing: effects that belong to an interval or to one recording, and so to no simulator.
+        identified: parts of identified layers; those that act like a named effect are in the numbers above.
     """
 
     robot: Robot
@@ -103,6 +106,7 @@ class ArmPhysics:
     drives: tuple[Drive, ...]
     blur: JointVector
     passing: tuple[NamedEffect, ...] = ()
+    identified: tuple[IdentifiedPart, ...] = ()
 
     @property
     def n_dof(self) -> int:
@@ -159,7 +163,42 @@ def arm_physics(model: Robot | CorrectedModel) -> ArmPhysics:
     for effect in lasting:
         if effect.effect not in IN_BODIES:
             arm = ADDED[effect.effect](arm, effect.joint, effect.values)
+    for layer in _identified_layers(model):
+        arm = _with_identified(arm, layer)
     return arm
+
+
+def _identified_layers(model: Any) -> list[IdentifiedLayer]:
+    """Those of a corrected model and of the corrected models that it stands on."""
+    if not isinstance(model, CorrectedModel):
+        return []
+    return [*_identified_layers(model.nominal), *([] if model.identified is None else [model.identified])]
+
+
+def _with_identified(arm: ArmPhysics, layer: IdentifiedLayer) -> ArmPhysics:
+    robot, parts = changed_robot(arm.robot, layer)
+    arm = replace(arm, robot=robot)
+    for term, weight in zip(layer.terms, layer.weights.tolist(), strict=True):
+        if weight == 0.0:
+            continue
+        felt = weight if term.kind == "offset" else weight / arm.drives[term.joint].gain  # weights are of the log
+        part = term_part(term, felt, _least_weight(arm, term.kind, term.joint))
+        parts.append(part)
+        if part.alike is not None:
+            arm = ADDED[part.alike.effect](arm, part.alike.joint, part.alike.values)
+    return replace(arm, identified=(*arm.identified, *parts))
+
+
+def _least_weight(arm: ArmPhysics, kind: str, joint: int) -> float:
+    """The weight with which what a joint has of a kind becomes zero."""
+    has = {
+        "viscous": arm.viscous[joint],
+        "dry": min(arm.forward[joint], arm.backward[joint]),
+        "rotor": arm.rotor[joint],
+        "load": arm.load_friction[joint],
+        "spring": arm.stiffness[joint],
+    }
+    return -float(has[kind]) if kind in has else -np.inf
 
 
 def _flattened(model: Any) -> tuple[Any, list[NamedEffect], JointVector | None]:

@@ -1,0 +1,1 @@
+"""Several parameter sets of one robot against recordings: right, wrong, undecided."""
