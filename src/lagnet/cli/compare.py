@@ -38,13 +38,17 @@ def command(
     """
     from lagnet.cli.parts.motion import route_of
     from lagnet.cli.shared.console import numbers, say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.comparison.compare import compare
     from lagnet.comparison.writing import lines, write_comparison
     from lagnet.recordings.loading.load import load_recording
 
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
     models = load_models(robot, hold)
-    read = [load_recording(p, robot=models[0], columns=columns, torque_constant=constants) for p in recordings]
+    read = [
+        load_recording(p, robot=models[0], columns=columns, torque_constant=constants, progress=while_reading())
+        for p in recordings
+    ]
     if route_of(None, read) == "motion":
         result = _on_motion(models, robot, read, actuator or [], seed)
     elif actuator:

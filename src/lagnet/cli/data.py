@@ -49,9 +49,10 @@ def inspect_log(
     """Say what a log holds, what its effort column most likely is, and write the mapping file to edit."""
     from lagnet.cli.parts.inspection import inspect_file
     from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.files import write_whole
 
-    lines, text = inspect_file(file, robot, columns, _show if sys.stderr.isatty() else None)
+    lines, text = inspect_file(file, robot, columns, while_reading())
     for line in lines:
         say(line)
     path = out or Path(f"{file.name or 'log'}.columns.toml")

@@ -33,6 +33,7 @@ def command(
 ) -> None:
     """Split the torque into inertial, Coriolis, gravity and residual parts."""
     from lagnet.cli.shared.console import say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.decomposition.decompose import decompose
     from lagnet.decomposition.writing import write_decomposition
     from lagnet.recordings.loading.load import load_recording
@@ -42,7 +43,10 @@ def command(
     specs = [model, *(member or [])]
     loaded = load_models([*specs, reference] if reference else specs, hold)
     models, believed = loaded[: len(specs)], loaded[-1] if reference else None
-    read = [load_recording(p, robot=models[0], columns=columns, torque_constant=constants) for p in recordings]
+    read = [
+        load_recording(p, robot=models[0], columns=columns, torque_constant=constants, progress=while_reading())
+        for p in recordings
+    ]
     parts = decompose(models if member else models[0], read, believed, seed=seed)
     write_decomposition(parts, out)
     page = write_decomposition_report(parts, model, reference, out / "report.html")

@@ -78,6 +78,7 @@ def command(
     from lagnet.cli.parts.replayed import replay_held_out, replay_settings
     from lagnet.cli.parts.simulated import nominal_from
     from lagnet.cli.shared.console import above_zero, not_negative, numbers, say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.diagnosis.diagnose import diagnose
     from lagnet.diagnosis.nominal.log_alignment import lay_side_by_side
     from lagnet.diagnosis.writing import write_diagnosis
@@ -94,7 +95,7 @@ def command(
     )
     read = [
         [
-            load_recording(p, robot=model, columns=columns, torque_constant=constants)
+            load_recording(p, robot=model, columns=columns, torque_constant=constants, progress=while_reading())
             for given in paths
             for p in recordings_in(given)
         ]

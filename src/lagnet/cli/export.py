@@ -34,6 +34,7 @@ def command(
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
     from lagnet.cli.shared.console import numbers, say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.cli.shared.replays import servo_of
     from lagnet.models.files.loading import load_any
     from lagnet.recordings.loading.load import load_recording
@@ -53,7 +54,10 @@ def command(
     if verify and exporter.engine is not None:
         settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd))
         constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
-        read = [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in verify]
+        read = [
+            load_recording(p, robot=model, columns=columns, torque_constant=constants, progress=while_reading())
+            for p in verify
+        ]
         result = verified_by(model, read, settings)
     listed = write_export_json(written, out, result)
     joints = written.arm.robot.joints

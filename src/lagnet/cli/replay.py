@@ -32,6 +32,7 @@ def command(
     if tolerance <= 0 or longest <= 0:
         raise LagnetError("the tolerance and the length to replay are above zero", where="--tolerance, --longest")
     from lagnet.cli.shared.console import numbers, say
+    from lagnet.cli.shared.reading import while_reading
     from lagnet.cli.shared.replays import say_replay, servo_of
     from lagnet.recordings.loading.load import load_recording
     from lagnet.reports.replay_report import write_replay_report
@@ -40,7 +41,10 @@ def command(
 
     (model,) = load_models([robot], hold)
     constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
-    read = [load_recording(p, robot=model, columns=columns, torque_constant=constants) for p in recordings]
+    read = [
+        load_recording(p, robot=model, columns=columns, torque_constant=constants, progress=while_reading())
+        for p in recordings
+    ]
     settings = ReplaySettings(engine=engine, tolerance=tolerance, longest=longest, servo=servo_of(kp, kd))
     result = before_and_after(model, read, settings)
     summary, table = write_replay(result, out)
