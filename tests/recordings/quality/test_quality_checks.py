@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -166,3 +167,17 @@ def test_real_recordings_raise_no_false_alarm(shared_data) -> None:
         assert not [f.sentence() for f in screen(recording).findings], name
     panda = screen(load_recording(shared_data / "panda" / "holdout.csv.gz")).findings
     assert [f.check for f in panda] == ["repeated_packets"]
+
+
+@pytest.mark.parametrize(
+    ("types", "unit"),
+    [
+        (None, "rad or m"),
+        (("revolute", "prismatic", "revolute"), "m"),
+        (("continuous", "revolute", "prismatic"), "rad"),
+    ],
+)
+def test_an_outlier_is_told_in_the_unit_of_its_joint(types: tuple[str, ...] | None, unit: str) -> None:
+    robot = None if types is None else SimpleNamespace(joint_types=types)
+    found = screen(put(sound(), "q", 500, 1, 3.0), robot).findings
+    assert [f"{unit} off their curve" in f.detail for f in found if f.check == "outliers"] == [True]

@@ -15,6 +15,7 @@ from lagnet.recordings.quality.finding import NO_ROWS, Finding
 from lagnet.recordings.recording import Recording
 
 KINDS = ("q", "v", "tau")
+UNITS = {"q": ("rad", "m"), "v": ("rad/s", "m/s"), "tau": ("N m", "N")}  # of revolute and of prismatic joints
 MOTION = 1e-3  # [rad] or [m] that a joint must range over to be called moving
 FEW = 8  # samples of a stretch below which nothing is looked for in it
 
@@ -26,10 +27,12 @@ class JointLimits:
     Args:
         velocity: shape (dof,), [rad/s] or [m/s].
         effort: shape (dof,), [N m] or [N].
+        prismatic: which joints are, shape (dof,); None where no description is given.
     """
 
     velocity: np.ndarray
     effort: np.ndarray
+    prismatic: np.ndarray | None = None
 
 
 def no_limits(n_dof: int) -> JointLimits:
@@ -74,6 +77,13 @@ class Subject:
     def named(self, kind: str, joint: int) -> str:
         """A column for people, such as "tau_2 (elbow_joint)"."""
         return f"{kind}_{joint} ({self.recording.joints[joint]})"
+
+    def unit(self, kind: str, joint: int) -> str:
+        """The unit of a signal, such as "rad/s"; both where nobody says what the joint is."""
+        revolute, prismatic = UNITS[kind]
+        if self.limits.prismatic is None:
+            return f"{revolute} or {prismatic}"
+        return prismatic if self.limits.prismatic[joint] else revolute
 
     def span(self, rows: np.ndarray) -> tuple[float, float]:
         """First and last time of some rows [s]."""

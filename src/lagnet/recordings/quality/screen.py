@@ -31,12 +31,14 @@ class Screened:
 
 
 def limits_of(robot: Any, n_dof: int) -> JointLimits:
-    """The speed and effort limits that a model states; none where it states none."""
+    """The limits of speed and effort and the prismatic joints that a model states; none where it states none."""
     blank = no_limits(n_dof)
     speed, effort = getattr(robot, "velocity_limit", None), getattr(robot, "effort_limit", None)
+    types = getattr(robot, "joint_types", None)
     return JointLimits(
         blank.velocity if speed is None else np.asarray(speed, float),
         blank.effort if effort is None else np.asarray(effort, float),
+        None if types is None else np.array([kind == "prismatic" for kind in types]),
     )
 
 
@@ -45,7 +47,7 @@ def screen(recording: Recording, robot: Any = None, checks: Sequence[type[Qualit
 
     Args:
         recording: as read.
-        robot: anything with `velocity_limit` and `effort_limit`; None where there is none.
+        robot: anything with `velocity_limit`, `effort_limit` and `joint_types`; None where there is none.
     """
     limits = limits_of(robot, recording.n_dof)
     findings: list[Finding] = []

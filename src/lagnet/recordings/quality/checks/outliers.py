@@ -74,7 +74,7 @@ def _words(subject: Subject, kind: str, joint: int, runs: int, samples: int, at:
     what = f"{runs} samples or short runs are" if runs > 1 else f"{samples} samples in a row are"
     what = "a sample is" if runs == samples == 1 else what
     worst = "the worst " if runs > 1 else ""
-    off = f"{worst}{value:.4g} at t = {time:.6g} s, {size:.3g} off their curve"
+    off = f"{worst}{value:.4g} at t = {time:.6g} s, {size:.3g} {subject.unit(kind, joint)} off their curve"
     return f"{subject.named(kind, joint)}: {what} far off the neighbours, {off}"
 
 
