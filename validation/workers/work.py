@@ -77,7 +77,7 @@ def tasks_of(folder: Path, joints: int, seconds: float, count: int, search: str)
         write_recording(record(robot, seconds, rng), file)
     settings = TrackSettings(reports=False, search=search)
     make = Make(f"arm_{joints}", path)
-    plain = calibrate(Calibration(make, (str(files[0]),), settings, folder / f"calibration_{joints}"))
+    plain = calibrate(Calibration(make, (str(files[0]),), settings, folder / f"calibration_{joints}", (1.0,)))
     tracked = set_from_plain(plain["set"])
     return [
         Work(

@@ -33,10 +33,10 @@ from lagnet.tracking.index import read_index
 
 MAX_BYTES = 64 * 1024**2
 TOP = ("make", "robot", "index", "settings")
-MAKE = ("name", "robot", "columns", "torque_constant", "hold", "calibration")
+MAKE = ("name", "robot", "columns", "torque_constant", "hold", "calibration", "actuator")
 ROBOT = ("name", "make", "recordings")
 SEARCHES = ("every", "unusual")
-ENTRY = ("files", "date", "date_in_name", "temperature")
+ENTRY = ("files", "date", "date_in_name", "temperature", "gain")
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,7 @@ class Make:
         torque_constant: one a joint [N m/A] or [N/A], or None.
         hold: joints that no recording tells of, and where they are held [rad or m].
         calibration: recordings of a healthy robot of this make.
+        actuator: file of the nominal servos, where recordings hold commands and no torque; None: those of the robot.
     """
 
     name: str
@@ -80,6 +81,7 @@ class Make:
     torque_constant: tuple[float, ...] | None = None
     hold: Mapping[str, float] = field(default_factory=dict)
     calibration: tuple[str, ...] = ()
+    actuator: str | None = None
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,7 @@ class TrackedRecording:
         file: path or address.
         date: when it was recorded.
         temperature: of the joints where it is known from elsewhere [°C]; None: that of the file, if it holds any.
+        gain: of the controller over the nominal servo's, where commands were recorded and no torque.
     """
 
     robot: str
@@ -99,6 +102,7 @@ class TrackedRecording:
     file: str
     date: datetime
     temperature: float | None = None
+    gain: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -208,7 +212,9 @@ def _make(table: dict[str, Any], base: Path, where: str) -> Make:
     calibration = tuple(file for pattern in patterns for file in matching(base, str(pattern), place))
     local = str(base / robot) if exists(join(base, robot)) else robot
     columns = None if "columns" not in table else str(base / _text(table, "columns", place))
-    return Make(name, local, columns, None if constants is None else tuple(map(float, constants)), hold, calibration)
+    actuator = None if "actuator" not in table else str(base / _text(table, "actuator", place))
+    torque_constant = None if constants is None else tuple(map(float, constants))
+    return Make(name, local, columns, torque_constant, hold, calibration, actuator)
 
 
 def _declared(make: str, makes: Mapping[str, Make], where: str) -> str:
@@ -229,10 +235,13 @@ def _robot(table: dict[str, Any], makes: Mapping[str, Make], base: Path, where: 
         temperature = entry.get("temperature")
         if not (temperature is None or isinstance(temperature, int | float)):
             raise LagnetError("temperature must be a number [°C]", where=place)
+        gain = entry.get("gain", 1.0)
+        if isinstance(gain, bool) or not isinstance(gain, int | float) or not 0.0 < gain < 1e6:
+            raise LagnetError("gain must be a positive number", where=place, next_step="state it over the nominal gain")
         files = matching(base, _text(entry, "files", place), place)
         if "date" in entry and len(files) > 1:
             raise LagnetError(f"one date for {len(files)} files", where=place, next_step="use date_in_name or an index")
-        out += [TrackedRecording(name, make, f, as_date(entry, f, place), temperature) for f in files]
+        out += [TrackedRecording(name, make, f, as_date(entry, f, place), temperature, float(gain)) for f in files]
     return out
 
 

@@ -20,7 +20,8 @@ from lagnet.tracking.manifest import Make, Manifest, TrackedRecording, read_mani
 from lagnet.tracking.statistics.analyse import Analysis, analyse
 from lagnet.tracking.statistics.series import Observation
 from lagnet.tracking.tables import TrackRow, write_tables
-from lagnet.tracking.tracked_set import TrackedSet, common_set, effect_from_plain, new_physics, set_from_plain
+from lagnet.tracking.tracked_servos import Followed, TrackedServos, common_followed, followed_from_plain
+from lagnet.tracking.tracked_set import effect_from_plain, new_physics
 from lagnet.tracking.work import Calibration, Work, calibrate, diagnose_one, fingerprint_of, fit_one
 
 Progress = Callable[[str, int, int], None]
@@ -109,35 +110,43 @@ def track(
     return Track(fleet, rows, analysis, folder, joints)
 
 
-def _task(recording: TrackedRecording, fleet: Manifest, tracked: TrackedSet, out: Path, room: str) -> Work:
+def _task(recording: TrackedRecording, fleet: Manifest, tracked: Followed, out: Path, room: str) -> Work:
     key = f"{recording.date:%Y-%m-%dT%H%M%S}_{hashlib.sha256(recording.file.encode()).hexdigest()[:8]}"
     make = fleet.makes[recording.make]
     return Work(recording, make, tracked, fleet.settings, out / room / recording.robot / key)
 
 
-def _sets(fleet: Manifest, out: Path, desk: _Desk) -> dict[str, TrackedSet]:
+def _sets(fleet: Manifest, out: Path, desk: _Desk) -> dict[str, Followed]:
     """What is followed on each make: of its calibration, or of the first recording of each of its robots."""
     tasks: list[Calibration] = []
+    gain_of = {r.file: r.gain for r in fleet.recordings}
     for make in _used(fleet):
         room = out / "calibration" / make.name
         if make.calibration:
-            tasks.append(Calibration(make, make.calibration, fleet.settings, room))
+            gains = tuple(gain_of.get(file, 1.0) for file in make.calibration)
+            tasks.append(Calibration(make, make.calibration, fleet.settings, room, gains))
             continue
         first = {r.robot: r for r in reversed(fleet.recordings) if r.make == make.name}
-        tasks += [Calibration(make, (first[n].file,), fleet.settings, room / n) for n in sorted(first)]
+        tasks += [
+            Calibration(make, (one.file,), fleet.settings, room / name, (one.gain,))
+            for name, one in sorted(first.items())
+        ]
     told = desk.done("calibration", calibrate, "calibration", tasks)
-    sets: dict[str, list[TrackedSet]] = defaultdict(list)
+    sets: dict[str, list[Followed]] = defaultdict(list)
     errors: dict[str, str] = {}
     for task, result in zip(tasks, told, strict=True):
         if "set" in result:
-            sets[task.make.name].append(set_from_plain(result["set"]))
+            sets[task.make.name].append(followed_from_plain(result["set"]))
         else:
             errors.setdefault(task.make.name, str(result["error"]))
     for make in _used(fleet):
         if not sets[make.name]:
             step = "mend the recording, or state other calibration recordings"
             raise LagnetError(f"no calibration ({errors[make.name]})", where=f"make {make.name}", next_step=step)
-    return {name: found[0] if fleet.makes[name].calibration else common_set(found) for name, found in sets.items()}
+    return {
+        name: found[0] if fleet.makes[name].calibration else common_followed(found, name)
+        for name, found in sets.items()
+    }
 
 
 def _used(fleet: Manifest) -> list[Make]:
@@ -155,6 +164,8 @@ def _with_new_physics(
     again: list[tuple[int, Work]] = []
     for indices in by_robot.values():
         known = tasks[indices[0]].tracked
+        if isinstance(known, TrackedServos):
+            continue
         new = new_physics(known, [[effect_from_plain(e) for e in told[i]["new"]] for i in indices])
         if new:
             again += [(i, _task(tasks[i].recording, fleet, known.with_new(new), out, "fits")) for i in indices]

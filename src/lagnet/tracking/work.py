@@ -26,18 +26,21 @@ from lagnet.tracking.files import local_copy, stamp
 from lagnet.tracking.finished import fingerprint, read_finished, write_finished
 from lagnet.tracking.fixed_fit import fit_set, model_with
 from lagnet.tracking.manifest import Make, TrackedRecording, TrackSettings
+from lagnet.tracking.servo_work import calibrated_servos, fill_with_motion, on_motion, servos_fitted, servos_searched
 from lagnet.tracking.temperature import joint_temperature
+from lagnet.tracking.tracked_servos import Followed, TrackedServos
 from lagnet.tracking.tracked_set import TrackedSet, beyond, effect_from_plain, lasting, set_of_calibration
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Recordings of a make that are diagnosed together against its nominal model."""
+    """Recordings of a make, diagnosed together against its nominal model, with the controller's gain in each."""
 
     make: Make
     files: tuple[str, ...]
     settings: TrackSettings
     folder: Path
+    gains: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ class Work:
 
     recording: TrackedRecording
     make: Make
-    tracked: TrackedSet
+    tracked: Followed
     settings: TrackSettings
     folder: Path
 
@@ -64,6 +67,12 @@ def calibrate(task: Calibration) -> dict[str, Any]:
     try:
         nominal = _nominal(task.make)
         recordings = [_read(f, task.make, nominal)[0] for f in task.files]
+        if on_motion(recordings):
+            found, servos = calibrated_servos(recordings, nominal, task.make, task.gains, task.settings.seed)
+            told = {"set": servos.plain()}
+            return write_finished(
+                task.folder, made_from, told, lambda folder: fill_with_motion(found, folder, task.settings)
+            )
         result = diagnose(recordings, nominal, bandwidth=task.settings.bandwidth, seed=task.settings.seed)
         tracked = set_of_calibration(result.corrected, result.verdict.conditioning["bandwidth_hz"])
         left = np.median([fit_set(r, nominal, tracked).left for r in recordings], axis=0)
@@ -94,18 +103,23 @@ def diagnose_one(task: Work) -> dict[str, Any]:
     try:
         nominal = _nominal(task.make)
         recording, temperature = _read(task.recording.file, task.make, nominal, task.recording.temperature)
-        told = _fitted(recording, nominal, task.tracked) | {"temperature": temperature}
+        told = _fitted(recording, nominal, task) | {"temperature": temperature}
         if settings.search == "unusual" and not task.tracked.is_unusual(np.array(told["left"])):
             return write_finished(task.folder, made_from, told | {"new": [], "searched": False}, lambda folder: None)
-        result = _searched(recording, nominal, task, told)
+        if isinstance(task.tracked, TrackedServos):
+            found = servos_searched(recording, nominal, task.make, task.recording.gain, settings.seed)
+            return write_finished(
+                task.folder, made_from, told | {"new": []}, lambda folder: fill_with_motion(found, folder, settings)
+            )
+        result = _searched(recording, nominal, task.tracked, settings.seed, told)
     except LagnetError as error:
         return write_finished(task.folder, made_from, {"error": str(error)}, lambda folder: None)
     told["new"] = [_plain(e) for e in beyond(task.tracked, lasting(result.corrected.effects))]
     return write_finished(task.folder, made_from, told, lambda folder: _fill(result, folder, settings))
 
 
-def _searched(recording: Recording, nominal: Any, task: Work, told: Mapping[str, Any]) -> Diagnosis:
-    known, tracked = {"bandwidth": task.tracked.bandwidth, "seed": task.settings.seed}, task.tracked
+def _searched(recording: Recording, nominal: Any, tracked: TrackedSet, seed: int, told: Mapping[str, Any]) -> Diagnosis:
+    known = {"bandwidth": tracked.bandwidth, "seed": seed}
     if not tracked.is_unusual(np.array(told["left"])):
         fitted = [effect_from_plain(e) for e in told["effects"]]
         result = diagnose([recording], model_with(nominal, (*tracked.held, *fitted), tracked), **known)
@@ -123,7 +137,7 @@ def fit_one(task: Work) -> dict[str, Any]:
     try:
         nominal = _nominal(task.make)
         recording, temperature = _read(task.recording.file, task.make, nominal, task.recording.temperature)
-        told = _fitted(recording, nominal, task.tracked) | {"temperature": temperature}
+        told = _fitted(recording, nominal, task) | {"temperature": temperature}
     except LagnetError as error:
         told = {"error": str(error)}
     return write_finished(task.folder, made_from, told, lambda folder: None)
@@ -133,9 +147,9 @@ def fingerprint_of(kind: str, task: Calibration | Work) -> str:
     """Checksum of the inputs of `calibrate` ("calibration"), `diagnose_one` ("diagnosis") or `fit_one` ("fit")."""
     if isinstance(task, Calibration):
         files: Any = [(f, stamp(f)) for f in task.files]
-        return fingerprint(kind, __version__, _of_make(task.make), files, _of(task.settings))
+        return fingerprint(kind, __version__, _of_make(task.make), files, task.gains, _of(task.settings))
     one = task.recording
-    file = (one.file, stamp(one.file), one.temperature)
+    file = (one.file, stamp(one.file), one.temperature, one.gain)
     return fingerprint(kind, __version__, _of_make(task.make), file, task.tracked.plain(), _of(task.settings))
 
 
@@ -147,6 +161,7 @@ def _of_make(make: Make) -> Any:
         make.columns and stamp(make.columns),
         make.torque_constant,
         dict(make.hold),
+        make.actuator and stamp(make.actuator),
     )
 
 
@@ -166,8 +181,10 @@ def _read(
         return recording, joint_temperature(recording, path, temperature)
 
 
-def _fitted(recording: Recording, nominal: Any, tracked: TrackedSet) -> dict[str, Any]:
-    fit = fit_set(recording, nominal, tracked)
+def _fitted(recording: Recording, nominal: Any, task: Work) -> dict[str, Any]:
+    if isinstance(task.tracked, TrackedServos):
+        return servos_fitted(recording, nominal, task.tracked, task.recording.gain)
+    fit = fit_set(recording, nominal, task.tracked)
     return {
         "joints": list(recording.joints),
         "rows": [asdict(row) for row in fit.rows],

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.stats import false_discovery_control
 
-from lagnet.effects.catalogue import effect_named
 from lagnet.tracking.statistics.change_points import Change, levels, outliers, scan
 from lagnet.tracking.statistics.covariates import THERMOMETER, CovariateModel, fit_covariates
+from lagnet.tracking.statistics.followed_law import stage_of
 from lagnet.tracking.statistics.pooling import pool
 from lagnet.tracking.statistics.series import NORMAL, Observation, Series, series_of
 
@@ -167,7 +167,7 @@ def _name(case: _Case) -> dict[str, Any]:
 
 
 def _events(case: _Case) -> list[Event]:
-    rows, needs = case.series.observations, effect_named(case.whole.group[2]).stage != "body"
+    rows, needs = case.series.observations, stage_of(case.whole.group[2]) != "body"
     known = not needs or bool(np.isfinite(case.whole.temperature).all())
     out = []
     for c in case.changes:

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-from lagnet.effects.catalogue import effect_named
+from lagnet.tracking.statistics.followed_law import stage_of
 from lagnet.tracking.statistics.series import Series
 
 KELVIN = 10.0  # unit of the temperature's column [K]
@@ -110,7 +110,7 @@ def _usual(group: Sequence[Series]) -> np.ndarray:
 
 
 def _columns(series: Series, usual: np.ndarray) -> np.ndarray:
-    stage = effect_named(series.group[2]).stage
+    stage = stage_of(series.group[2])
     warmth = (series.temperature - usual[0]) / KELVIN
     load = series.load / usual[1] - 1.0 if usual[1] > 0 else np.full(series.days.size, np.nan)
     apply = (stage != "body", stage == "torque")  # bodies do not warm, and load acts on friction

@@ -9,7 +9,7 @@ from datetime import datetime
 
 import numpy as np
 
-from lagnet.effects.catalogue import effect_named
+from lagnet.tracking.statistics.followed_law import lower_bound
 
 NORMAL = 1.959964  # half a 95 % interval in standard deviations
 LOG_SHARE = 0.9  # of the values of a group that must be clearly positive for a logarithmic scale
@@ -107,8 +107,7 @@ def series_of(observations: Sequence[Observation]) -> dict[Group, list[Series]]:
 
 def _is_positive(group: Group, rows: Sequence[Observation]) -> bool:
     """Whether a parameter that physics keeps positive is clearly above zero nearly everywhere."""
-    bound = next((p.lower for p in effect_named(group[2]).parameters if p.name == group[3]), -np.inf)
-    return bound >= 0.0 and float(np.mean([_clear(o) for o in rows])) >= LOG_SHARE
+    return lower_bound(group[2], group[3]) >= 0.0 and float(np.mean([_clear(o) for o in rows])) >= LOG_SHARE
 
 
 def _clear(one: Observation) -> bool:

@@ -1,0 +1,66 @@
+"""Servo laws with a fixed set of free parameters, fitted to rollouts of the whole arm: what a later recording says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
+from lagnet.diagnosis.motion.arm.intervals import half_widths
+from lagnet.diagnosis.motion.arm.named_laws import ArmLaws
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
+from lagnet.diagnosis.motion.joint.fitting import free_coordinates
+from lagnet.diagnosis.motion.problem import MotionProblem
+
+Group = tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLaws:
+    """Laws after a fit of some of their parameters.
+
+    Args:
+        laws: shape (dof, len(LAW)).
+        half: half-width of the 95 % interval of each free parameter, by joint and name.
+        left: error of position of each joint by rollouts, root mean square, shape (dof,) [rad or m].
+    """
+
+    laws: np.ndarray
+    half: dict[tuple[int, str], float]
+    left: np.ndarray
+
+
+def fit_fixed_laws(
+    problem: MotionProblem,
+    laws: np.ndarray,
+    free: Mapping[int, tuple[Group, ...]],
+    sizes: Mapping[int, Mapping[str, float]],
+    floors: np.ndarray,
+) -> FittedLaws:
+    """Levenberg–Marquardt on the free parameters of all joints together, over all recordings of the problem.
+
+    Args:
+        problem: commands and motion; all of it is fitted.
+        laws: where the fit starts, shape (dof, len(LAW)).
+        free: law parameters of each joint that are fitted, those of a group with one value.
+        sizes: typical size of every law parameter, of each joint in `free`.
+        floors: resolution of the positions of each joint, shape (dof,) [rad or m].
+    """
+    dof = len(problem.joints)
+    runs = ArmRuns(problem, runs_to_fit(problem, max(r.recording for r in problem.runs) + 1), tuple(range(dof)))
+    coordinates = {j: free_coordinates(groups, laws[j], dict(sizes[j])) for j, groups in free.items() if groups}
+    if not coordinates:
+        return FittedLaws(laws.copy(), {}, _rms(runs.errors(laws)))
+    arm = ArmLaws(runs, laws, coordinates)
+    coupled = sensitivities_of(arm.errors, arm.sizes, arm.nearest)
+    values = fit_values(arm.errors, coupled, arm.read(), arm.sizes, floors, nearest=arm.nearest)
+    here = arm.errors(values)
+    half, _ = half_widths(here, coupled(values, here), floors, np.diag(arm.sizes))
+    names = [(j, name) for j, c in coordinates.items() for name in (g[0] for g in c.groups)]
+    return FittedLaws(arm.write(values), dict(zip(names, map(float, half), strict=True)), _rms(here))
+
+
+def _rms(errors: list[np.ndarray]) -> np.ndarray:
+    return np.array([np.sqrt(np.mean(e**2)) for e in errors])

@@ -1,0 +1,101 @@
+"""The servo laws of a make, fitted by rollouts to one recording of commands and positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from lagnet.diagnosis.motion.arm.fixed_laws import FittedLaws, fit_fixed_laws
+from lagnet.diagnosis.motion.problem import MotionProblem, pose_motion_problem
+from lagnet.diagnosis.motion.wording import as_ratio
+from lagnet.diagnosis.verdict.verdict import NamedParameter
+from lagnet.models.corrected.changed_bodies import Correction
+from lagnet.recordings.recording import Recording
+from lagnet.rigid_body.kinematic_tree import kinematic_tree
+from lagnet.rigid_body.robot import Robot
+from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
+from lagnet.servos.parameters import INDEX, KP, NAMES
+from lagnet.tracking.fixed_fit import ParameterRow
+from lagnet.tracking.tracked_servos import TrackedServo, TrackedServos
+from lagnet.types import joint_types_of
+
+METRES = {"rad": "m", "N m": "N"}  # of a prismatic joint
+
+
+@dataclass(frozen=True, eq=False)
+class ServoFit:
+    """Servo laws fitted to one recording.
+
+    Args:
+        laws: shape (dof, len(LAW)).
+        rows: the parameters that are followed.
+        load: shape (dof,), mean magnitude of the torque that the nominal bodies need [N m or N].
+        left: shape (dof,), error of rollouts, root mean square [rad or m].
+    """
+
+    laws: np.ndarray
+    rows: tuple[ParameterRow, ...]
+    load: np.ndarray
+    left: np.ndarray
+
+
+def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain: float = 1.0) -> ServoFit:
+    """The free parameters of all joints together, by rollouts of the whole arm.
+
+    Args:
+        recording: all of it is fitted.
+        nominal: the nominal bodies of the make.
+        tracked: the set, with laws from which to start.
+        gain: of the controller, relative to that of the set's laws.
+
+    Raises:
+        DiagnosisError: no commands, or fewer than ten samples in every trajectory.
+    """
+    bodies = nominal.bodies() if isinstance(nominal, Correction) else getattr(nominal, "nominal", nominal)
+    problem = pose_motion_problem([recording], kinematic_tree(cast(Robot, bodies)), [gain])
+    free = {j: s.free for j, s in enumerate(tracked.servos) if s.free and _moves(problem, j)}
+    sizes = {j: dict(zip(NAMES, tracked.servos[j].sizes, strict=True)) for j in free}
+    fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors))
+    load = np.array([float(np.mean(np.abs(s.load))) for s in problem.series])
+    rows = tuple(row for j in free for row in _rows(problem, fitted, tracked.servos[j], j, bodies))
+    return ServoFit(fitted.laws, rows, load, fitted.left)
+
+
+def _moves(problem: MotionProblem, joint: int) -> bool:
+    return float(np.ptp(problem.series[joint].q)) > 1e-6
+
+
+def _rows(
+    problem: MotionProblem, fitted: FittedLaws, servo: TrackedServo, joint: int, bodies: Any
+) -> Iterable[ParameterRow]:
+    law = fitted.laws[joint]
+    slides = joint_types_of(bodies, len(problem.joints))[joint] == "prismatic"
+    for group in servo.free:
+        if (owner := owner_of(group[0], servo.effects)) is None:
+            continue  # fitted beside the others, and followed by no name
+        effect, parameter = owner
+        value, half = float(law[INDEX[group[0]]]), fitted.half[joint, group[0]]
+        told = NamedParameter(parameter, value, _unit(effect, parameter), (value - half, value + half))
+        told = told if servo.scale_is_set else as_ratio(told, float(law[KP]))
+        unit = told.unit
+        for revolute, prismatic in METRES.items():
+            unit = unit.replace(revolute, prismatic) if slides else unit
+        yield ParameterRow(effect, problem.joints[joint], told.name, unit or "–", told.value, *told.ci95)
+
+
+def _unit(effect: str, parameter: str) -> str:
+    return next(p.unit for p in servo_effect(effect).parameters if p.name == parameter)
+
+
+def owner_of(law_parameter: str, effects: tuple[str, ...]) -> tuple[str, str] | None:
+    """Effect and name under which a law parameter is told: of the named effects, else of the plainest that has it."""
+    plainest = sorted(SERVO_CATALOGUE, key=lambda name: len(servo_effect(name).parameters))
+    for name in (*effects, *plainest):
+        law = servo_effect(name)
+        for parameter, frees in zip(law.parameters, law.frees, strict=True):
+            if law_parameter in frees:
+                return name, parameter.name
+    return None
