@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from lagnet.errors import LagnetError, MissingExtraError
+from lagnet.recordings.loading.opening import is_recording, recordings_in
 
 ADDRESS = re.compile(r"^[a-z][a-z0-9+]*://")
 EXTRA = "install lagnet[tracking], and s3fs for s3:// or gcsfs for gs://"
@@ -34,7 +35,7 @@ def exists(path: str) -> bool:
 
 
 def matching(base: Path, pattern: str, where: str) -> list[str]:
-    """Files that a path or glob names, sorted.
+    """Files, and folders that are one recording, that a path or glob names, sorted.
 
     Raises:
         LagnetError: there is none.
@@ -44,12 +45,20 @@ def matching(base: Path, pattern: str, where: str) -> list[str]:
         store, inner = _store(full)
         found = [store.unstrip_protocol(p) for p in store.glob(inner)]
     else:
-        found = [full] if Path(full).is_file() else [p for p in glob.glob(full, recursive=True) if Path(p).is_file()]
+        found = [full] if Path(full).exists() else glob.glob(full, recursive=True)
+        found = [str(one) for path in found for one in _recordings(Path(path))]
     if not found:
         raise LagnetError(
             f"no file matches {pattern}", where=where, next_step="check the path; it starts at the manifest"
         )
     return sorted(found)
+
+
+def _recordings(path: Path) -> tuple[Path, ...]:
+    """A file; a folder where it is a recording, or those in it; of anything else nothing."""
+    if path.is_file():
+        return (path,)
+    return tuple(one for one in recordings_in(path) if is_recording(one)) if path.is_dir() else ()
 
 
 def stamp(path: str) -> str:
@@ -65,10 +74,12 @@ def stamp(path: str) -> str:
         changed = next((str(told[k]) for k in ("ETag", "etag", "mtime", "LastModified", "updated") if k in told), "")
         return f"{told.get('size')} {changed}"
     try:
-        told = Path(path).stat()
+        one = Path(path)
+        files = sorted(p for p in one.rglob("*") if p.is_file()) if one.is_dir() else [one]
+        told = [file.stat() for file in files]
     except OSError:
         return ""
-    return f"{told.st_size} {told.st_mtime_ns}"
+    return f"{sum(t.st_size for t in told)} {max((t.st_mtime_ns for t in told), default=0)}"
 
 
 @contextmanager

@@ -75,6 +75,14 @@ def recordings_in(path: str | Path) -> tuple[Path, ...]:
     return tuple(sorted(folder for folder in path.iterdir() if folder.is_dir() and is_motion_folder(folder))) or (path,)
 
 
+def is_recording(path: str | Path) -> bool:
+    """Whether a path is a file, or a folder of a format that is one recording."""
+    path = Path(path)
+    return path.is_file() or (
+        path.is_dir() and (is_motion_folder(path) or is_lerobot_folder(path) or bool(_bag_files(path)))
+    )
+
+
 def checksum(files: Iterable[Path]) -> str:
     """The sha256 of files, one after the other, read block by block."""
     digest = hashlib.sha256()

@@ -1,0 +1,1 @@
+"""Memory and time in which a large bag is read."""
