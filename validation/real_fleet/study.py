@@ -45,7 +45,7 @@ def arm(folder: Path, motions: Sequence[Path]) -> Path:
     lines = [*SETTINGS, "[[make]]", 'name = "so101"', f"robot = {robot}", f"calibration = [{listed}]"]
     lines += ["[[robot]]", 'name = "arm"']
     for minute, motion in enumerate(motions):
-        lines += ["[[robot.recordings]]", f"files = {json.dumps(str(motion))}", f"date = 2026-01-01T00:{minute:02d}"]
+        lines += ["[[robot.recordings]]", f"files = {json.dumps(str(motion))}", f"date = 2026-01-01T00:{minute:02d}:00"]
     return _written(folder, lines)
 
 

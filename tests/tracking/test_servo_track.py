@@ -1,0 +1,118 @@
+"""A servo that logs commands alone: its friction is followed from recording to recording, and told where it grows."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from tests.diagnosis.motion import pendulum
+from tests.tracking.fleets import START
+
+from lagnet.errors import EffectError, LagnetError
+from lagnet.models.files.loading import load_any
+from lagnet.recordings.writing import write_recording
+from lagnet.tracking.engine import EngineSettings
+from lagnet.tracking.manifest import Make
+from lagnet.tracking.servo_fit import fit_servos, owner_of
+from lagnet.tracking.servo_work import calibrated_servos, on_motion
+from lagnet.tracking.statistics.followed_law import lower_bound, stage_of
+from lagnet.tracking.track import track
+from lagnet.tracking.tracked_servos import common_followed, followed_from_plain
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
+    pytest.mark.xdist_group("servo track"),
+]
+DRY, WORN = 0.15, 0.22  # [N m] friction before and after; nominal 0.02
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
+    """The nominal servo, and what a healthy one showed on a minute of motion."""
+    folder = tmp_path_factory.mktemp("servo")
+    nominal = pendulum.write_model(folder / "pendulum.xml")
+    healthy = pendulum.write_model(folder / "healthy.xml", friction=DRY)
+    worn = pendulum.write_model(folder / "worn.xml", friction=WORN)
+    robot = load_any(str(nominal))
+    first = pendulum.record(healthy, 60.0, seed=0)
+    found, tracked = calibrated_servos([first], robot, Make("servo", str(nominal)), [1.0], 0)
+    return SimpleNamespace(
+        folder=folder, robot=robot, healthy=healthy, worn=worn, found=found, set=tracked, first=first
+    )
+
+
+def friction(bench: SimpleNamespace, model: Path, seed: int):
+    rows = fit_servos(pendulum.record(model, 20.0, seed=seed), bench.robot, bench.set).rows
+    return next(row for row in rows if row.effect == "coulomb_friction")
+
+
+def test_the_set_is_what_the_calibration_named(bench):
+    assert [e.effect for e in bench.found.effects] == ["coulomb_friction"]
+    assert bench.set.servos[0].effects == ("coulomb_friction",)
+    assert followed_from_plain(json.loads(json.dumps(bench.set.plain()))) == bench.set
+
+
+@pytest.mark.parametrize(("worn", "true"), [(False, DRY), (True, WORN)])
+def test_friction_of_a_later_recording_is_recovered_with_its_interval(bench, worn, true):
+    found = friction(bench, bench.worn if worn else bench.healthy, seed=5)
+    assert (found.parameter, found.unit) == ("Fc/kp", "rad")  # a balanced load does not tell the scale of torques
+    assert found.value == pytest.approx(true / pendulum.NOMINAL["kp"], rel=0.03)
+    assert found.lower <= true / pendulum.NOMINAL["kp"] <= found.upper
+
+
+def test_a_gain_of_the_controller_is_taken_into_account(bench):
+    twice = pendulum.write_model(bench.folder / "twice.xml", friction=DRY, kp=16.0, kv=0.4)
+    recording = pendulum.record(twice, 20.0, seed=7)
+    told, silent = (fit_servos(recording, bench.robot, bench.set, gain) for gain in (2.0, 1.0))
+    assert told.left[0] < 0.5 * silent.left[0]
+
+
+def test_a_worn_servo_is_unusual_beside_the_fixed_laws(bench):
+    assert not bench.set.is_unusual(np.array(bench.set.left))
+    assert bench.set.is_unusual(2.0 * np.array(bench.set.left))
+
+
+def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, scheduler):
+    folder = bench.folder / "fleet"
+    write_recording(bench.first, folder / "calibration.csv")
+    for week in range(8):
+        recording = pendulum.record(bench.worn if week >= 4 else bench.healthy, 20.0, seed=20 + week)
+        write_recording(recording, folder / f"{START + timedelta(days=7 * week):%Y-%m-%d}.csv")
+    lines = ["[settings]", "reports = false", 'search = "unusual"', "[[make]]", 'name = "servo"']
+    lines += ['robot = "../pendulum.xml"', 'calibration = "calibration.csv"', "[[robot]]", 'name = "one"']
+    lines += ["[[robot.recordings]]", 'files = "2*.csv"', 'date_in_name = "%Y-%m-%d"', "temperature = 25"]
+    (folder / "fleet.toml").write_text("\n".join(lines))
+    found = track(folder / "fleet.toml", folder / "out", EngineSettings(scheduler=scheduler))
+    assert not found.failed
+    assert [(e.effect, e.joint, e.kind) for e in found.analysis.events] == [("coulomb_friction", "servo", "step")]
+    assert found.analysis.events[0].date == START + timedelta(days=28)
+
+
+def test_robots_without_calibration_share_what_half_of_them_show(bench):
+    plain = replace(bench.set, servos=(replace(bench.set.servos[0], effects=(), free=()),))
+    common = common_followed([bench.set, bench.set, plain], "servo")
+    assert common.servos[0].free == bench.set.servos[0].free
+    assert common_followed([bench.set, plain, plain], "servo").servos[0].free == ()
+
+
+def test_recordings_of_two_kinds_are_told(bench):
+    torque = replace(bench.first, tau=np.zeros_like(bench.first.q), path="other.csv")
+    assert on_motion([bench.first])
+    with pytest.raises(LagnetError, match=r"other\.csv: holds torque, where"):
+        on_motion([bench.first, torque])
+
+
+def test_laws_of_both_catalogues_are_known():
+    assert owner_of("viscous", ()) == ("viscous_friction", "Fv")
+    assert owner_of("coulomb", ("stribeck_friction",)) == ("stribeck_friction", "Fc")
+    assert owner_of("stiffness", ()) is None
+    assert [stage_of(e) for e in ("payload", "static_friction", "dead_band")] == ["body", "torque", "signal"]
+    assert lower_bound("static_friction", "Fs/kp") == 0.0
+    assert lower_bound("torque_offset", "b") == -np.inf
+    with pytest.raises(EffectError, match="unknown effect 'wear'"):
+        stage_of("wear")
