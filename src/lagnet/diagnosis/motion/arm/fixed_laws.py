@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
-from lagnet.diagnosis.motion.arm.named_laws import ArmLaws
+from lagnet.diagnosis.motion.arm.named_laws import ITERATIONS, ArmLaws
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.joint.fitting import free_coordinates
 from lagnet.diagnosis.motion.problem import MotionProblem
@@ -55,7 +55,8 @@ def fit_fixed_laws(
         return FittedLaws(laws.copy(), {}, _rms(runs.errors(laws)))
     arm = ArmLaws(runs, laws, coordinates)
     coupled = sensitivities_of(arm.errors, arm.sizes, arm.nearest)
-    values = fit_values(arm.errors, coupled, arm.read(), arm.sizes, floors, nearest=arm.nearest)
+    start, slopes = arm.read(), arm.sensitivities  # one rollout for a parameter of every joint
+    values = fit_values(arm.errors, slopes, start, arm.sizes, floors, nearest=arm.nearest, iterations=ITERATIONS)
     here = arm.errors(values)
     half, _ = half_widths(here, coupled(values, here), floors, np.diag(arm.sizes))
     names = [(j, name) for j, c in coordinates.items() for name in (g[0] for g in c.groups)]
