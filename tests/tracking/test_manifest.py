@@ -35,6 +35,25 @@ def test_globs_dates_and_temperatures(tmp_path):
     assert manifest.makes["planar"].robot == "ur5"
 
 
+def test_folders_that_are_recordings_gains_and_servos(tmp_path):
+    for name in ("swing", "lift"):
+        for file in ("control.csv", "state_motor.csv"):
+            (tmp_path / "arm" / name).mkdir(parents=True, exist_ok=True)
+            (tmp_path / "arm" / name / file).write_text("x")
+    text = MAKE + 'actuator = "servo.toml"\n[[robot]]\nname = "one"\n[[robot.recordings]]\nfiles = "arm/swing"\n'
+    text += 'date = 2026-01-05\ngain = 2\n[[robot.recordings]]\nfiles = "arm/l*"\ndate = 2026-01-06\n'
+    manifest = read_manifest(write(tmp_path, text))
+    assert [(r.file, r.gain) for r in manifest.recordings] == [
+        (str(tmp_path / "arm" / "swing"), 2.0),
+        (str(tmp_path / "arm" / "lift"), 1.0),
+    ]
+    assert manifest.makes["planar"].actuator == str(tmp_path / "servo.toml")
+    assert matching(tmp_path, "arm", "here") == [str(tmp_path / "arm" / name) for name in ("lift", "swing")]
+    before = stamp(str(tmp_path / "arm" / "swing"))
+    (tmp_path / "arm" / "swing" / "control.csv").write_text("longer")
+    assert stamp(str(tmp_path / "arm" / "swing")) != before
+
+
 def test_an_index_states_a_large_fleet(tmp_path):
     (tmp_path / "index.csv").write_text(
         "robot,make,file,date,temperature\none,planar,b.csv,2026-01-05,\ntwo,planar,a/2026-01-05.csv,2026-01-06,25.5\n"
@@ -69,6 +88,9 @@ ROBOT = MAKE + '[[robot]]\nname = "one"\n[[robot.recordings]]\n'
             ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n[[robot.recordings]]\nfiles = "b.csv"\ndate = 2026-01-06\n',
             "stated twice",
         ),
+        (ROBOT + 'files = "b.csv"\ndate = 2026-01-05\ngain = 0\n', "gain must be a positive number"),
+        (ROBOT + 'files = "a"\ndate = 2026-01-05\n', "no file matches a"),
+        (ROBOT.replace('"ur5"', '"ur5"\nactuator = 3') + 'files = "b.csv"\ndate = 2026-01-05\n', "actuator is missing"),
         ("[settings]\nsearch = 'all'\n" + ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n', "search = 'all'"),
         ("[settings]\nseed = 1.5\n" + ROBOT + 'files = "b.csv"\ndate = 2026-01-05\n', "seed = 1.5"),
     ],
