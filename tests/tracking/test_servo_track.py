@@ -18,11 +18,11 @@ from lagnet.models.files.loading import load_any
 from lagnet.recordings.writing import write_recording
 from lagnet.tracking.engine import EngineSettings
 from lagnet.tracking.manifest import Make
-from lagnet.tracking.servo_fit import fit_servos, owner_of
-from lagnet.tracking.servo_work import calibrated_servos, on_motion
+from lagnet.tracking.servos.fit import fit_servos, owner_of
+from lagnet.tracking.servos.tracked import common_followed, followed_from_plain
+from lagnet.tracking.servos.work import calibrated_servos, on_motion
 from lagnet.tracking.statistics.followed_law import lower_bound, stage_of
 from lagnet.tracking.track import track
-from lagnet.tracking.tracked_servos import common_followed, followed_from_plain
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
@@ -93,6 +93,14 @@ def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, s
     assert found.analysis.events[0].date == START + timedelta(days=28)
 
 
+def test_a_payload_of_the_calibration_is_carried_in_later_fits(bench):
+    body = 0.5 * bench.robot.inertial_parameters()[-1]
+    heavier = replace(bench.set, body=tuple(map(float, body)))
+    light, heavy = (fit_servos(bench.first, bench.robot, s).load[0] for s in (bench.set, heavier))
+    assert heavy == pytest.approx(1.5 * light, rel=0.05)
+    assert followed_from_plain(json.loads(json.dumps(heavier.plain()))) == heavier
+
+
 def test_robots_without_calibration_share_what_half_of_them_show(bench):
     plain = replace(bench.set, servos=(replace(bench.set.servos[0], effects=(), free=()),))
     common = common_followed([bench.set, bench.set, plain], "servo")
@@ -108,8 +116,8 @@ def test_recordings_of_two_kinds_are_told(bench):
 
 
 def test_laws_of_both_catalogues_are_known():
-    assert owner_of("viscous", ()) == ("viscous_friction", "Fv")
-    assert owner_of("coulomb", ("stribeck_friction",)) == ("stribeck_friction", "Fc")
+    owners = (owner_of("viscous", ()), owner_of("coulomb", ("stribeck_friction",)))
+    assert [(o[0], o[1].name) for o in owners if o] == [("viscous_friction", "Fv"), ("stribeck_friction", "Fc")]
     assert owner_of("stiffness", ()) is None
     assert [stage_of(e) for e in ("payload", "static_friction", "dead_band")] == ["body", "torque", "signal"]
     assert lower_bound("static_friction", "Fs/kp") == 0.0

@@ -56,9 +56,7 @@ def matching(base: Path, pattern: str, where: str) -> list[str]:
 
 def _recordings(path: Path) -> tuple[Path, ...]:
     """A file; a folder where it is a recording, or those in it; of anything else nothing."""
-    if path.is_file():
-        return (path,)
-    return tuple(one for one in recordings_in(path) if is_recording(one)) if path.is_dir() else ()
+    return tuple(one for one in recordings_in(path) if is_recording(one))
 
 
 def stamp(path: str) -> str:

@@ -17,10 +17,10 @@ from lagnet.errors import LagnetError
 from lagnet.tracking.engine import Engine, EngineSettings, open_engine
 from lagnet.tracking.finished import read_finished, remove_parts
 from lagnet.tracking.manifest import Make, Manifest, TrackedRecording, read_manifest
+from lagnet.tracking.servos.tracked import Followed, TrackedServos, common_followed, followed_from_plain
 from lagnet.tracking.statistics.analyse import Analysis, analyse
 from lagnet.tracking.statistics.series import Observation
 from lagnet.tracking.tables import TrackRow, write_tables
-from lagnet.tracking.tracked_servos import Followed, TrackedServos, common_followed, followed_from_plain
 from lagnet.tracking.tracked_set import effect_from_plain, new_physics
 from lagnet.tracking.work import Calibration, Work, calibrate, diagnose_one, fingerprint_of, fit_one
 

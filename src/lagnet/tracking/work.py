@@ -26,9 +26,9 @@ from lagnet.tracking.files import local_copy, stamp
 from lagnet.tracking.finished import fingerprint, read_finished, write_finished
 from lagnet.tracking.fixed_fit import fit_set, model_with
 from lagnet.tracking.manifest import Make, TrackedRecording, TrackSettings
-from lagnet.tracking.servo_work import calibrated_servos, fill_with_motion, on_motion, servos_fitted, servos_searched
+from lagnet.tracking.servos.tracked import Followed, TrackedServos
+from lagnet.tracking.servos.work import calibrated_servos, fill_with_motion, on_motion, servos_fitted, servos_searched
 from lagnet.tracking.temperature import joint_temperature
-from lagnet.tracking.tracked_servos import Followed, TrackedServos
 from lagnet.tracking.tracked_set import TrackedSet, beyond, effect_from_plain, lasting, set_of_calibration
 
 

@@ -92,7 +92,7 @@ def diagnose_motion(
         DiagnosisError: no recording, joints that are not the robot's, or a recording without commands.
     """
     fit_on, held, factors = _divide(recordings, robot, holdout, gains)
-    bodies, servo = _nominal(robot, servo)
+    bodies, servo = nominal_of(robot, servo)
     tree = kinematic_tree(bodies)
     continued = 0 if holdout else len(held)
     problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued)
@@ -132,8 +132,12 @@ def _as_given(servo: NominalServo, joint: int, estimated: np.ndarray) -> np.ndar
     return servo.laws[joint] if servo.known[joint] else estimated
 
 
-def _nominal(robot: Any, servo: NominalServo | None) -> tuple[Any, NominalServo]:
-    """The nominal bodies and servos."""
+def nominal_of(robot: Any, servo: NominalServo | None) -> tuple[Any, NominalServo]:
+    """The nominal bodies and servos.
+
+    Raises:
+        DiagnosisError: a model without bodies.
+    """
     if isinstance(robot, ServoDrivenModel):
         given = NominalServo(robot.laws, (True,) * robot.n_dof, "file")
         return robot.nominal, servo or given

@@ -70,7 +70,7 @@ def open_source(path: str | Path, progress: Progress | None = None) -> tuple[Tab
 def recordings_in(path: str | Path) -> tuple[Path, ...]:
     """The recordings that a path holds: itself, or the motion folders below it."""
     path = Path(path)
-    if not path.is_dir() or is_motion_folder(path) or is_lerobot_folder(path) or _bag_files(path):
+    if not path.is_dir() or is_recording(path):
         return (path,)
     return tuple(sorted(folder for folder in path.iterdir() if folder.is_dir() and is_motion_folder(folder))) or (path,)
 
@@ -78,9 +78,9 @@ def recordings_in(path: str | Path) -> tuple[Path, ...]:
 def is_recording(path: str | Path) -> bool:
     """Whether a path is a file, or a folder of a format that is one recording."""
     path = Path(path)
-    return path.is_file() or (
-        path.is_dir() and (is_motion_folder(path) or is_lerobot_folder(path) or bool(_bag_files(path)))
-    )
+    if not path.is_dir():
+        return path.is_file()
+    return is_motion_folder(path) or is_lerobot_folder(path) or bool(_bag_files(path))
 
 
 def checksum(files: Iterable[Path]) -> str:

@@ -42,9 +42,14 @@ def groups_of(case: JointCase, effects: Sequence[str]) -> list[tuple[str, ...]]:
     for name in effects:
         law = servo_effect(name)
         groups += [*law.frees, *((extra,) for extra in law.with_it)]
+    return disjoint(groups)
+
+
+def disjoint(groups: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Groups of law parameters less those that an earlier one holds, single parameters before shared ones."""
     taken: set[str] = set()
     out = []
-    for group in sorted(dict.fromkeys(groups), key=len):  # one parameter for itself before one that shares
+    for group in sorted(dict.fromkeys(groups), key=len):
         left = tuple(p for p in group if p not in taken)
         if left:
             out.append(left)

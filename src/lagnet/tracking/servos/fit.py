@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any, cast
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.fixed_laws import FittedLaws, fit_fixed_laws
+from lagnet.diagnosis.motion.diagnose import nominal_of, with_body
 from lagnet.diagnosis.motion.problem import MotionProblem, pose_motion_problem
 from lagnet.diagnosis.motion.wording import as_ratio
 from lagnet.diagnosis.verdict.verdict import NamedParameter
-from lagnet.models.corrected.changed_bodies import Correction
+from lagnet.effects.effect import Parameter
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import kinematic_tree
-from lagnet.rigid_body.robot import Robot
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 from lagnet.servos.parameters import INDEX, KP, NAMES
 from lagnet.tracking.fixed_fit import ParameterRow
-from lagnet.tracking.tracked_servos import TrackedServo, TrackedServos
+from lagnet.tracking.servos.tracked import TrackedServo, TrackedServos
 from lagnet.types import joint_types_of
-
-METRES = {"rad": "m", "N m": "N"}  # of a prismatic joint
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +52,9 @@ def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain:
     Raises:
         DiagnosisError: no commands, or fewer than ten samples in every trajectory.
     """
-    bodies = nominal.bodies() if isinstance(nominal, Correction) else getattr(nominal, "nominal", nominal)
-    problem = pose_motion_problem([recording], kinematic_tree(cast(Robot, bodies)), [gain])
+    bodies, _ = nominal_of(nominal, None)
+    loaded = with_body(bodies, np.array(tracked.body)) if tracked.body else bodies
+    problem = pose_motion_problem([recording], kinematic_tree(loaded), [gain], tracked.voltage)
     free = {j: s.free for j, s in enumerate(tracked.servos) if s.free and _moves(problem, j)}
     sizes = {j: dict(zip(NAMES, tracked.servos[j].sizes, strict=True)) for j in free}
     fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors))
@@ -78,24 +77,18 @@ def _rows(
             continue  # fitted beside the others, and followed by no name
         effect, parameter = owner
         value, half = float(law[INDEX[group[0]]]), fitted.half[joint, group[0]]
-        told = NamedParameter(parameter, value, _unit(effect, parameter), (value - half, value + half))
+        told = NamedParameter(parameter.name, value, parameter.unit, (value - half, value + half))
         told = told if servo.scale_is_set else as_ratio(told, float(law[KP]))
-        unit = told.unit
-        for revolute, prismatic in METRES.items():
-            unit = unit.replace(revolute, prismatic) if slides else unit
+        unit = replace(parameter, unit=told.unit).unit_for(slides)
         yield ParameterRow(effect, problem.joints[joint], told.name, unit or "–", told.value, *told.ci95)
 
 
-def _unit(effect: str, parameter: str) -> str:
-    return next(p.unit for p in servo_effect(effect).parameters if p.name == parameter)
-
-
-def owner_of(law_parameter: str, effects: tuple[str, ...]) -> tuple[str, str] | None:
-    """Effect and name under which a law parameter is told: of the named effects, else of the plainest that has it."""
+def owner_of(law_parameter: str, effects: tuple[str, ...]) -> tuple[str, Parameter] | None:
+    """Effect and parameter that tell a law parameter: of the named effects, else of the plainest that has it."""
     plainest = sorted(SERVO_CATALOGUE, key=lambda name: len(servo_effect(name).parameters))
     for name in (*effects, *plainest):
         law = servo_effect(name)
         for parameter, frees in zip(law.parameters, law.frees, strict=True):
             if law_parameter in frees:
-                return name, parameter.name
+                return name, parameter
     return None

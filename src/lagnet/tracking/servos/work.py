@@ -18,8 +18,8 @@ from lagnet.reports.motion_report import write_motion_report
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.servo_file import read_servo_file
 from lagnet.tracking.manifest import Make, TrackSettings
-from lagnet.tracking.servo_fit import fit_servos
-from lagnet.tracking.tracked_servos import TrackedServos, servos_of_calibration
+from lagnet.tracking.servos.fit import fit_servos
+from lagnet.tracking.servos.tracked import TrackedServos, servos_of_calibration
 
 
 def on_motion(recordings: Sequence[Recording]) -> bool:

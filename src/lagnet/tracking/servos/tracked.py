@@ -12,12 +12,14 @@ import numpy as np
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.joint.refitting import groups_of
+from lagnet.diagnosis.motion.joint.refitting import disjoint, groups_of
+from lagnet.diagnosis.motion.problem import median_voltage
 from lagnet.errors import LagnetError
-from lagnet.servos.parameters import INDEX, NAMES
+from lagnet.servos.parameters import NAMES
 from lagnet.tracking.tracked_set import SHARE, UNUSUAL, TrackedSet, common_set, set_from_plain
 
 Group = tuple[str, ...]
+STILL = 1e-6  # [rad or m] resolution where a joint does not move
 
 
 @dataclass(frozen=True)
@@ -47,11 +49,15 @@ class TrackedServos:
         servos: one a joint.
         floors: resolution of the positions [rad or m].
         left: for each joint, error of rollouts where the set was found, root mean square [rad or m]; empty: not known.
+        body: ten inertial parameters of the payload that the calibration found on the last link; empty: none.
+        voltage: of the supply, to which the laws belong [V]; 0: not recorded.
     """
 
     servos: tuple[TrackedServo, ...]
     floors: tuple[float, ...]
     left: tuple[float, ...] = ()
+    body: tuple[float, ...] = ()
+    voltage: float = 0.0
 
     def is_unusual(self, left: np.ndarray) -> bool:
         """Whether errors are clearly larger than where the set was found, at any joint; True if it is not known."""
@@ -79,24 +85,25 @@ def servos_from_plain(plain: Mapping[str, Any]) -> TrackedServos:
         )
         for s in plain["servos"]
     )
-    return TrackedServos(servos, *(tuple(map(float, plain[name])) for name in ("floors", "left")))
+    numbers = {name: tuple(map(float, plain[name])) for name in ("floors", "left", "body")}
+    return TrackedServos(servos, **numbers, voltage=float(plain["voltage"]))
 
 
 def servos_of_calibration(found: MotionDiagnosis) -> TrackedServos:
-    """The laws that a calibration named; errors of rollouts are those of its held-out recordings."""
-    servos, floors = [], []
-    for joint, diagnosis in enumerate(found.joints):
-        servos.append(_servo(diagnosis, found.corrected.laws[joint]))
-        floors.append(1e-6 if diagnosis is None else diagnosis.case.floor)
-    return TrackedServos(tuple(servos), tuple(floors))
+    """The laws and the payload that a calibration named; what they leave is not yet known."""
+    servos = tuple(_servo(d, found.corrected.laws[j]) for j, d in enumerate(found.joints))
+    floors = tuple(STILL if d is None else d.case.floor for d in found.joints)
+    last, nominal = (m.nominal.inertial_parameters()[-1] for m in (found.corrected, found.nominal))
+    body = tuple(map(float, last - nominal)) if np.any(last != nominal) else ()
+    return TrackedServos(servos, floors, body=body, voltage=median_voltage(found.fit_recordings))
 
 
 def _servo(found: JointDiagnosis | None, law: np.ndarray) -> TrackedServo:
     if found is None:
         return TrackedServo(tuple(map(float, law)))
-    free, case = groups_of(found.case, found.named.effects), found.case
+    case = found.case
     sizes = sizes_of(case.scales)
-    kept = tuple(g for g in free if case.scale_is_set or g[0] != "kp")
+    kept = tuple(g for g in groups_of(case, found.named.effects) if case.scale_is_set or g[0] != "kp")
     return TrackedServo(
         tuple(map(float, found.named_law)),
         found.named.effects,
@@ -110,24 +117,20 @@ def common_servos(sets: Sequence[TrackedServos]) -> TrackedServos:
     """At each joint what at least half of the robots of a make show, from the median of their laws."""
     servos = tuple(_common([s.servos[j] for s in sets]) for j in range(len(sets[0].servos)))
     floors, left = (tuple(map(float, np.median([getattr(s, n) for s in sets], axis=0))) for n in ("floors", "left"))
-    return TrackedServos(servos, floors, left)
+    loaded = [s.body for s in sets if s.body]
+    body = tuple(map(float, np.median(loaded, axis=0))) if len(loaded) >= SHARE * len(sets) else ()
+    return TrackedServos(servos, floors, left, body, float(np.median([s.voltage for s in sets])))
 
 
 def _common(servos: Sequence[TrackedServo]) -> TrackedServo:
     moved = [s for s in servos if s.sizes] or list(servos)
     counts = Counter(g for s in moved for g in s.free)
-    free = [g for g, n in counts.items() if n >= SHARE * len(moved)]
+    free = tuple(disjoint([g for g, n in counts.items() if n >= SHARE * len(moved)]))
     names = Counter(e for s in moved for e in s.effects)
     law, sizes = (np.median([getattr(s, n) for s in moved], axis=0) for n in ("law", "sizes"))
     kept = tuple(e for e, n in names.items() if n >= SHARE * len(moved))
-    taken: set[str] = set()
-    groups = []
-    for group in sorted(free, key=lambda g: (len(g), INDEX[g[0]])):
-        if left := tuple(p for p in group if p not in taken):
-            groups.append(left)
-            taken |= set(left)
-    first = moved[0]
-    return replace(first, law=tuple(map(float, law)), effects=kept, free=tuple(groups), sizes=tuple(map(float, sizes)))
+    plain_law, plain_sizes = (tuple(map(float, x)) for x in (law, sizes))
+    return replace(moved[0], law=plain_law, effects=kept, free=free, sizes=plain_sizes)
 
 
 Followed = TrackedSet | TrackedServos
