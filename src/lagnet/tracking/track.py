@@ -17,6 +17,7 @@ from lagnet.errors import LagnetError
 from lagnet.tracking.engine import Engine, EngineSettings, open_engine
 from lagnet.tracking.finished import read_finished, remove_parts
 from lagnet.tracking.manifest import Make, Manifest, TrackedRecording, read_manifest
+from lagnet.tracking.servos.new_physics import with_new_servo_effects
 from lagnet.tracking.servos.tracked import Followed, TrackedServos, common_followed, followed_from_plain
 from lagnet.tracking.statistics.analyse import Analysis, analyse
 from lagnet.tracking.statistics.series import Observation
@@ -164,17 +165,23 @@ def _with_new_physics(
     again: list[tuple[int, Work]] = []
     for indices in by_robot.values():
         known = tasks[indices[0]].tracked
-        if isinstance(known, TrackedServos):
-            continue
-        new = new_physics(known, [[effect_from_plain(e) for e in told[i]["new"]] for i in indices])
-        if new:
-            again += [(i, _task(tasks[i].recording, fleet, known.with_new(new), out, "fits")) for i in indices]
+        larger = _larger(known, [told[i]["new"] for i in indices])
+        if larger is not known:
+            again += [(i, _task(tasks[i].recording, fleet, larger, out, "fits")) for i in indices]
     fitted = desk.done("fits with new physics", fit_one, "fit", [task for _, task in again])
     out_told = list(told)
     for (i, _), result in zip(again, fitted, strict=True):
         if "rows" in result:
             out_told[i] = {**told[i], **result}
     return out_told
+
+
+def _larger(known: Followed, found: Sequence[Sequence[Mapping[str, Any]]]) -> Followed:
+    """The set with the new physics of a robot's recordings; `known` itself where there is none."""
+    if isinstance(known, TrackedServos):
+        return with_new_servo_effects(known, found)
+    new = new_physics(known, [[effect_from_plain(e) for e in effects] for effects in found])
+    return known.with_new(new) if new else known
 
 
 def _observations(recording: TrackedRecording, told: dict[str, Any]) -> Iterable[Observation]:

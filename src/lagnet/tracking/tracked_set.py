@@ -169,13 +169,20 @@ def new_physics(known: TrackedSet, found: Sequence[Sequence[NamedEffect]]) -> tu
         frequent one, in the same recordings' place, is most likely a misnomer of it.
     """
     places = [{(e.effect, e.joint): e for e in effects} for effects in found]
-    counts = Counter(p for row in places for p in row if p not in known.places)
-    if not counts:
-        return ()
-    most = max(counts.values())
-    last = set(places[-1]) if places else set()
-    kept = [p for p, n in counts.items() if n >= max(SUPPORT, RIVALRY * most)]
-    if not kept:
-        kept = [p for p in counts if p in last][:1]
-    kept.sort(key=lambda p: (p[0], -1 if p[1] is None else p[1]))
+    kept = repeated([[p for p in row if p not in known.places] for row in places])
     return tuple(_median([row[p] for row in places if p in row]) for p in kept)
+
+
+def repeated(found: Sequence[Sequence[Place]]) -> list[Place]:
+    """Places named in several recordings of a robot or, where none is, one of the last; those far rarer left out.
+
+    Args:
+        found: what the search named beyond the set, for each recording in order of time.
+    """
+    counts = Counter(p for row in found for p in dict.fromkeys(row))
+    if not counts:
+        return []
+    most = max(counts.values())
+    kept = [p for p, n in counts.items() if n >= max(SUPPORT, RIVALRY * most)]
+    kept = kept or [p for p in counts if p in found[-1]][:1]
+    return sorted(kept, key=lambda p: (p[0], -1 if p[1] is None else p[1]))

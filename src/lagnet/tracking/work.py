@@ -26,6 +26,7 @@ from lagnet.tracking.files import local_copy, stamp
 from lagnet.tracking.finished import fingerprint, read_finished, write_finished
 from lagnet.tracking.fixed_fit import fit_set, model_with
 from lagnet.tracking.manifest import Make, TrackedRecording, TrackSettings
+from lagnet.tracking.servos.new_physics import named_beyond
 from lagnet.tracking.servos.tracked import Followed, TrackedServos
 from lagnet.tracking.servos.work import calibrated_servos, fill_with_motion, on_motion, servos_fitted, servos_searched
 from lagnet.tracking.temperature import joint_temperature
@@ -108,8 +109,9 @@ def diagnose_one(task: Work) -> dict[str, Any]:
             return write_finished(task.folder, made_from, told | {"new": [], "searched": False}, lambda folder: None)
         if isinstance(task.tracked, TrackedServos):
             found = servos_searched(recording, nominal, task.make, task.recording.gain, settings.seed)
+            told["new"] = [asdict(e) for e in named_beyond(task.tracked, found)]
             return write_finished(
-                task.folder, made_from, told | {"new": []}, lambda folder: fill_with_motion(found, folder, settings)
+                task.folder, made_from, told, lambda folder: fill_with_motion(found, folder, settings)
             )
         result = _searched(recording, nominal, task.tracked, settings.seed, told)
     except LagnetError as error:
