@@ -56,10 +56,15 @@ def test_folders_that_are_recordings_gains_and_servos(tmp_path):
 
 def test_an_index_states_a_large_fleet(tmp_path):
     (tmp_path / "index.csv").write_text(
-        "robot,make,file,date,temperature\none,planar,b.csv,2026-01-05,\ntwo,planar,a/2026-01-05.csv,2026-01-06,25.5\n"
+        "robot,make,file,date,temperature,gain\n"
+        "one,planar,b.csv,2026-01-05,,\n"
+        "two,planar,a/2026-01-05.csv,2026-01-06,25.5,2\n"
     )
     manifest = read_manifest(write(tmp_path, 'index = "index.csv"\n' + MAKE))
-    assert [(r.robot, r.temperature) for r in manifest.recordings] == [("one", None), ("two", 25.5)]
+    assert [(r.robot, r.temperature, r.gain) for r in manifest.recordings] == [
+        ("one", None, 1.0),
+        ("two", 25.5, 2.0),
+    ]
 
 
 ROBOT = MAKE + '[[robot]]\nname = "one"\n[[robot.recordings]]\n'
@@ -100,6 +105,13 @@ def test_mistakes_are_told(tmp_path, text, words):
         read_manifest(write(tmp_path, text))
     assert words in str(error.value)
     assert "fleet.toml" in str(error.value)
+
+
+@pytest.mark.parametrize("gain", ["0", "-1", "1e9", "high"])
+def test_a_gain_of_an_index_must_be_a_positive_number(tmp_path, gain):
+    (tmp_path / "index.csv").write_text(f"robot,make,file,date,gain\none,planar,b.csv,2026-01-05,{gain}\n")
+    with pytest.raises(LagnetError, match=r"index\.csv, line 2.*gain"):
+        read_manifest(write(tmp_path, 'index = "index.csv"\n' + MAKE))
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A table of recordings for fleets too large for a manifest: robot, make, file, date and, optionally, temperature."""
+"""A table of recordings for fleets too large for a manifest: robot, make, file, date; optionally temperature, gain."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from lagnet.tracking.dates import parsed
 
 COLUMNS = ("robot", "make", "file", "date")
 MAX_BYTES = 512 * 1024**2
-OPTIONAL = ("temperature",)
+OPTIONAL = ("temperature", "gain")
+MOST_GAIN = 1e6  # over the nominal gain
 UNSAFE = set('/\\:*?"<>|')
 
 
@@ -29,6 +30,7 @@ class IndexRow:
     file: str
     date: datetime
     temperature: float | None
+    gain: float = 1.0
 
 
 def read_index(path: Path) -> list[IndexRow]:
@@ -61,10 +63,15 @@ def _rows(table: csv.DictReader, where: str) -> Iterator[IndexRow]:
         if UNSAFE & set(robot) or not robot.strip(".") or not robot.isprintable():
             raise LagnetError(f"the name {robot!r} cannot be the name of a folder", where=place)
         date = parsed(row["date"], place)
-        yield IndexRow(robot, row["make"].strip(), row["file"].strip(), date, _degrees(row.get("temperature"), place))
+        warm, gain = _number(row, "temperature", place), _number(row, "gain", place)
+        if gain is not None and not 0.0 < gain < MOST_GAIN:
+            step = "state it over the nominal gain, or leave it empty"
+            raise LagnetError("gain must be a positive number", where=place, next_step=step)
+        yield IndexRow(robot, row["make"].strip(), row["file"].strip(), date, warm, 1.0 if gain is None else gain)
 
 
-def _degrees(text: str | None, where: str) -> float | None:
+def _number(row: dict[str, str | None], name: str, where: str) -> float | None:
+    text = row.get(name)
     if text is None or not text.strip():
         return None
     try:
@@ -72,5 +79,5 @@ def _degrees(text: str | None, where: str) -> float | None:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise LagnetError(f"the temperature {text!r} is no number", where=where, next_step="leave unknown ones empty")
+        raise LagnetError(f"the {name} {text!r} is no number", where=where, next_step="leave unknown ones empty")
     return value

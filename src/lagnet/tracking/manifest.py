@@ -12,7 +12,7 @@ make = "planar"
 files = "arm_01/*.parquet"
 date_in_name = "%Y-%m-%d"                 # or date = 2026-01-31 for a single file
 
-Large fleets state `index = "recordings.csv"` with the columns robot, make, file, date and, optionally, temperature.
+Large fleets state `index = "recordings.csv"` with robot, make, file, date; optionally temperature, gain.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from lagnet.errors import LagnetError, closest
 from lagnet.files import read_bounded
 from lagnet.tracking.dates import as_date
 from lagnet.tracking.files import exists, join, matching
-from lagnet.tracking.index import read_index
+from lagnet.tracking.index import MOST_GAIN, read_index
 
 MAX_BYTES = 64 * 1024**2
 TOP = ("make", "robot", "index", "settings")
@@ -136,7 +136,9 @@ def read_manifest(path: str | Path) -> Manifest:
     if "index" in data:
         rows = read_index(path.parent / str(data["index"]))
         found += [
-            TrackedRecording(r.robot, _declared(r.make, makes, where), join(path.parent, r.file), r.date, r.temperature)
+            TrackedRecording(
+                r.robot, _declared(r.make, makes, where), join(path.parent, r.file), r.date, r.temperature, r.gain
+            )
             for r in rows
         ]
     if not found:
@@ -236,7 +238,7 @@ def _robot(table: dict[str, Any], makes: Mapping[str, Make], base: Path, where: 
         if not (temperature is None or isinstance(temperature, int | float)):
             raise LagnetError("temperature must be a number [°C]", where=place)
         gain = entry.get("gain", 1.0)
-        if isinstance(gain, bool) or not isinstance(gain, int | float) or not 0.0 < gain < 1e6:
+        if isinstance(gain, bool) or not isinstance(gain, int | float) or not 0.0 < gain < MOST_GAIN:
             raise LagnetError("gain must be a positive number", where=place, next_step="state it over the nominal gain")
         files = matching(base, _text(entry, "files", place), place)
         if "date" in entry and len(files) > 1:

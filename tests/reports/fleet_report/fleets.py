@@ -12,11 +12,11 @@ START = datetime(2026, 1, 5)
 JOINTS = ("waist", "shoulder", "elbow")
 
 
-def synthetic_fleet(n_robots: int, n_recordings: int, seed: int = 0, prefix: str = "arm") -> Fleet:
-    """Robots of two makes; every tenth changes half-way, every hundredth in the last week."""
+def synthetic_fleet(n_robots: int, n_recordings: int, seed: int = 0, prefix: str = "arm", days: float = 3.0) -> Fleet:
+    """Robots of two makes; each tenth changes half-way, each hundredth in the last week."""
     rng = np.random.default_rng(seed)
     robots, events = [], []
-    dates = tuple(START + timedelta(days=3.0 * k) for k in range(n_recordings))
+    dates = tuple(START + timedelta(days=days * k) for k in range(n_recordings))
     for r in range(n_robots):
         name, since = f"{prefix}_{r:03d}", n_recordings - 1 if r % 100 == 0 else n_recordings // 2
         series = []

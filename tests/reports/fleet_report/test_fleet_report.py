@@ -38,6 +38,11 @@ def test_a_change_in_words():
     assert words_of(event) == "Coulomb friction (Fc) at elbow: +20 % (+18 to +22 %), at once on 2026-02-07"
 
 
+def test_a_change_within_a_day_is_told_with_its_time():
+    event = synthetic_fleet(1, 12, days=1.0 / 24.0).events[0]
+    assert words_of(event).endswith("at once on 2026-01-05 11:00")
+
+
 def test_an_empty_fleet_has_a_page(tmp_path):
     assert "0 robots" in write_fleet_report(Fleet([], []), tmp_path / "report.html").read_text()
 
@@ -52,3 +57,11 @@ def test_page_is_drawn_without_network(tmp_path, browse):
     assert seen.dom.count('class="fleet-plot"') == 7  # six parameters and temperature
     assert "<img" not in seen.dom
     assert 'href="diagnoses/' in seen.dom
+
+
+@pytest.mark.browser
+def test_recordings_of_one_day_are_told_apart_by_their_time(tmp_path, browse):
+    seen = browse(write_fleet_report(synthetic_fleet(1, 12, days=1.0 / 24.0), tmp_path / "report.html"))
+    assert "2026-01-05 11:00" in seen.text
+    assert re.search(r'text-anchor="end">2026-01-05 11:00<', seen.dom)
+    assert re.search(r'text-anchor="start">2026-01-05<', seen.dom)

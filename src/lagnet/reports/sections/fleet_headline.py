@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 from lagnet.reports.contents.fleet import Fleet, FleetEvent
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import counted, effect_words, number
@@ -45,7 +47,12 @@ def words_of(event: FleetEvent) -> str:
     else:
         size = f"{_sign(event.change)} {event.unit}".rstrip(" –")
     since = "at once on" if event.kind == "step" else "gradually since"
-    return f"{effect_words(event.effect)} ({event.parameter}) at {where}: {size}, {since} {event.date:%Y-%m-%d}"
+    return f"{effect_words(event.effect)} ({event.parameter}) at {where}: {size}, {since} {_day(event.date)}"
+
+
+def _day(date: datetime) -> str:
+    """The date, with the time of day but at midnight, which dates without a time have."""
+    return f"{date:%Y-%m-%d}" if (date.hour, date.minute) == (0, 0) else f"{date:%Y-%m-%d %H:%M}"
 
 
 def _sign(value: float) -> str:

@@ -11,7 +11,10 @@
     for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
     return new Float32Array(bytes.buffer);
   }
-  const day = (days) => new Date(days * DAY).toISOString().slice(0, 10);
+  function day(days) { // with the time of day, but at midnight, which dates without a time have
+    const [date, time] = new Date(Math.round(days * 1440) * 60000).toISOString().slice(0, 16).split("T");
+    return time === "00:00" ? date : `${date} ${time}`;
+  }
   function digits(value) {
     if (!Number.isFinite(value)) return "–";
     const size = Math.abs(value);
