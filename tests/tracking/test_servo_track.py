@@ -133,12 +133,24 @@ def test_what_one_search_names_once_is_not_followed(bench):
     assert larger.laws[0, INDEX["delay"]] == 0.02
 
 
-def test_a_payload_of_the_calibration_is_carried_in_later_fits(bench):
+def test_a_payload_is_followed_by_its_share(bench):
     body = 0.5 * bench.robot.inertial_parameters()[-1]
-    heavier = replace(bench.set, body=tuple(map(float, body)))
-    light, heavy = (fit_servos(bench.first, bench.robot, s).load[0] for s in (bench.set, heavier))
-    assert heavy == pytest.approx(1.5 * light, rel=0.05)
-    assert followed_from_plain(json.loads(json.dumps(heavier.plain()))) == heavier
+    loaded = replace(bench.set, body=tuple(map(float, body)))
+    heavier = pendulum.write_model(bench.folder / "heavier.xml", friction=DRY, mass=0.75)
+    for model, share in ((bench.healthy, 0.0), (heavier, 1.0)):
+        fit = fit_servos(pendulum.record(model, 20.0, seed=9), bench.robot, loaded)
+        row = next(r for r in fit.rows if r.effect == "payload")
+        assert (row.joint, row.parameter) == (None, "share")
+        assert row.value == pytest.approx(share, abs=0.1)
+        assert row.upper - row.lower < 0.3
+    assert followed_from_plain(json.loads(json.dumps(loaded.plain()))) == loaded
+
+
+def test_a_payload_that_is_found_again_and_again_is_followed(bench):
+    found = [{"effect": "payload", "joint": None, "values": {}, "body": [m, *[0.0] * 9]} for m in (0.1, 0.3, 0.2)]
+    larger = with_new_servo_effects(bench.set, [[e] for e in found])
+    assert larger.body[0] == 0.2
+    assert with_new_servo_effects(bench.set, [[found[0]], [], []]) is bench.set
 
 
 def test_robots_without_calibration_share_what_half_of_them_show(bench):

@@ -18,8 +18,8 @@ from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import kinematic_tree
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 from lagnet.servos.parameters import INDEX, KP, NAMES
-from lagnet.tracking.fixed_fit import ParameterRow
-from lagnet.tracking.servos.tracked import TrackedServo, TrackedServos
+from lagnet.tracking.fixed_fit import SHARE, ParameterRow
+from lagnet.tracking.servos.tracked import PAYLOAD, TrackedServo, TrackedServos
 from lagnet.types import joint_types_of
 
 
@@ -30,7 +30,7 @@ class ServoFit:
     Args:
         laws: shape (dof, len(LAW)).
         rows: the parameters that are followed.
-        load: shape (dof,), mean magnitude of the torque that the nominal bodies need [N m or N].
+        load: shape (dof,), mean magnitude of the torque that the bodies need, with what they carry [N m or N].
         left: shape (dof,), error of rollouts, root mean square [rad or m].
     """
 
@@ -53,14 +53,19 @@ def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain:
         DiagnosisError: no commands, or fewer than ten samples in every trajectory.
     """
     bodies, _ = nominal_of(nominal, None)
-    loaded = with_body(bodies, np.array(tracked.body)) if tracked.body else bodies
-    problem = pose_motion_problem([recording], kinematic_tree(loaded), [gain], tracked.voltage)
+    problem = pose_motion_problem([recording], kinematic_tree(bodies), [gain], tracked.voltage)
     free = {j: s.free for j, s in enumerate(tracked.servos) if s.free and _moves(problem, j)}
     sizes = {j: dict(zip(NAMES, tracked.servos[j].sizes, strict=True)) for j in free}
-    fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors))
+    body = np.array(tracked.body) if tracked.body else None
+    fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors), body)
+    rows = [row for j in free for row in _rows(problem, fitted, tracked.servos[j], j, bodies)]
+    if body is not None and fitted.share is not None:
+        share, half = fitted.share
+        rows.append(ParameterRow(PAYLOAD, None, SHARE, "–", share, share - half, share + half))
+        carried = kinematic_tree(with_body(bodies, share * body))
+        problem = pose_motion_problem([recording], carried, [gain], tracked.voltage)
     load = np.array([float(np.mean(np.abs(s.load))) for s in problem.series])
-    rows = tuple(row for j in free for row in _rows(problem, fitted, tracked.servos[j], j, bodies))
-    return ServoFit(fitted.laws, rows, load, fitted.left)
+    return ServoFit(fitted.laws, tuple(rows), load, fitted.left)
 
 
 def _moves(problem: MotionProblem, joint: int) -> bool:

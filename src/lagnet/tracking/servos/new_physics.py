@@ -11,29 +11,33 @@ import numpy as np
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import disjoint
 from lagnet.servos.catalogue import servo_effect
-from lagnet.tracking.servos.tracked import TrackedServo, TrackedServos
+from lagnet.tracking.servos.tracked import PAYLOAD, TrackedServo, TrackedServos, body_of
 from lagnet.tracking.statistics.followed_law import stage_of
 from lagnet.tracking.tracked_set import repeated
 
 
 @dataclass(frozen=True)
 class NewServoEffect:
-    """An effect that a search named at a joint whose set does not hold it.
+    """An effect that a search named and that the set does not hold.
 
     Args:
-        effect: name in the catalogue of servos.
-        joint: index of the joint.
-        values: its parameters by name, SI units.
+        effect: name in the catalogue of servos, or a payload.
+        joint: index of the joint; None: the whole arm.
+        values: its parameters by name, SI units; of a payload none.
+        body: of a payload, its ten inertial parameters.
     """
 
     effect: str
-    joint: int
+    joint: int | None
     values: Mapping[str, float]
+    body: tuple[float, ...] = ()
 
 
 def named_beyond(known: TrackedServos, found: MotionDiagnosis) -> list[NewServoEffect]:
-    """What a search named at the joints of a set that is neither followed already nor another name of what is."""
-    return [
+    """What a search named that is neither followed already nor another name of what is."""
+    body = body_of(found)
+    carried = [NewServoEffect(PAYLOAD, None, {}, body)] if body and not known.body else []
+    return carried + [
         NewServoEffect(name, joint, servo_effect(name).read(diagnosis.named_law))
         for joint, (servo, diagnosis) in enumerate(zip(known.servos, found.joints, strict=True))
         if diagnosis is not None and servo.sizes
@@ -58,12 +62,21 @@ def with_new_servo_effects(known: TrackedServos, found: Sequence[Sequence[Mappin
     Returns:
         `known` itself where nothing is to be followed in addition.
     """
-    rows = [{(str(e["effect"]), int(e["joint"])): e["values"] for e in effects} for effects in found]
-    servos = list(known.servos)
+    rows = [{(str(e["effect"]), e["joint"]): e for e in effects} for effects in found]
+    servos, body = list(known.servos), known.body
     for effect, joint in repeated([list(row) for row in rows]):
-        if joint is not None:
-            servos[joint] = _with(servos[joint], effect, [row[effect, joint] for row in rows if (effect, joint) in row])
-    return known if tuple(servos) == known.servos else replace(known, servos=tuple(servos))
+        named = [row[effect, joint] for row in rows if (effect, joint) in row]
+        if joint is None:
+            body = _middle([tuple(map(float, e["body"])) for e in named])
+        else:
+            servos[joint] = _with(servos[joint], effect, [e["values"] for e in named])
+    larger = replace(known, servos=tuple(servos), body=body)
+    return known if larger == known else larger
+
+
+def _middle(bodies: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
+    """The body whose mass lies in the middle: medians of mass and centre by themselves need not go together."""
+    return sorted(bodies)[len(bodies) // 2]
 
 
 def _with(servo: TrackedServo, effect: str, values: Sequence[Mapping[str, float]]) -> TrackedServo:

@@ -19,6 +19,7 @@ from lagnet.servos.parameters import NAMES
 from lagnet.tracking.tracked_set import SHARE, UNUSUAL, TrackedSet, common_set, set_from_plain
 
 Group = tuple[str, ...]
+PAYLOAD = "payload"  # the name of a body on the last link in verdicts
 STILL = 1e-6  # [rad or m] resolution where a joint does not move
 
 
@@ -49,7 +50,7 @@ class TrackedServos:
         servos: one a joint.
         floors: resolution of the positions [rad or m].
         left: for each joint, error of rollouts where the set was found, root mean square [rad or m]; empty: not known.
-        body: ten inertial parameters of the payload that the calibration found on the last link; empty: none.
+        body: ten inertial parameters of a payload of the last link, whose share is followed; empty: none.
         voltage: of the supply, to which the laws belong [V]; 0: not recorded.
     """
 
@@ -93,9 +94,13 @@ def servos_of_calibration(found: MotionDiagnosis) -> TrackedServos:
     """The laws and the payload that a calibration named; what they leave is not yet known."""
     servos = tuple(_servo(d, found.corrected.laws[j]) for j, d in enumerate(found.joints))
     floors = tuple(STILL if d is None else d.case.floor for d in found.joints)
+    return TrackedServos(servos, floors, body=body_of(found), voltage=median_voltage(found.fit_recordings))
+
+
+def body_of(found: MotionDiagnosis) -> tuple[float, ...]:
+    """Ten inertial parameters of the payload that a diagnosis found; empty: none."""
     last, nominal = (m.nominal.inertial_parameters()[-1] for m in (found.corrected, found.nominal))
-    body = tuple(map(float, last - nominal)) if np.any(last != nominal) else ()
-    return TrackedServos(servos, floors, body=body, voltage=median_voltage(found.fit_recordings))
+    return tuple(map(float, last - nominal)) if np.any(last != nominal) else ()
 
 
 def _servo(found: JointDiagnosis | None, law: np.ndarray) -> TrackedServo:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.carried_body import LoadedArm
 from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
 from lagnet.diagnosis.motion.arm.named_laws import ITERATIONS, ArmLaws
@@ -25,11 +26,13 @@ class FittedLaws:
         laws: shape (dof, len(LAW)).
         half: half-width of the 95 % interval of each free parameter, by joint and name.
         left: error of position of each joint by rollouts, root mean square, shape (dof,) [rad or m].
+        share: of a body on the last link, with the half-width of its 95 % interval; None: no body was given.
     """
 
     laws: np.ndarray
     half: dict[tuple[int, str], float]
     left: np.ndarray
+    share: tuple[float, float] | None = None
 
 
 def fit_fixed_laws(
@@ -38,6 +41,7 @@ def fit_fixed_laws(
     free: Mapping[int, tuple[Group, ...]],
     sizes: Mapping[int, Mapping[str, float]],
     floors: np.ndarray,
+    body: np.ndarray | None = None,
 ) -> FittedLaws:
     """Levenberg–Marquardt on the free parameters of all joints together, over all recordings of the problem.
 
@@ -47,20 +51,24 @@ def fit_fixed_laws(
         free: law parameters of each joint that are fitted, those of a group with one value.
         sizes: typical size of every law parameter, of each joint in `free`.
         floors: resolution of the positions of each joint, shape (dof,) [rad or m].
+        body: ten inertial parameters, shape (10,), of which the last link carries an unknown share; None: nothing.
     """
     dof = len(problem.joints)
     runs = ArmRuns(problem, runs_to_fit(problem, max(r.recording for r in problem.runs) + 1), tuple(range(dof)))
     coordinates = {j: free_coordinates(groups, laws[j], dict(sizes[j])) for j, groups in free.items() if groups}
-    if not coordinates:
+    if not coordinates and body is None:
         return FittedLaws(laws.copy(), {}, _rms(runs.errors(laws)))
-    arm = ArmLaws(runs, laws, coordinates)
+    laid = ArmLaws(runs, laws, coordinates)
+    arm = laid if body is None else LoadedArm(laid, body)
     coupled = sensitivities_of(arm.errors, arm.sizes, arm.nearest)
     start, slopes = arm.read(), arm.sensitivities  # one rollout for a parameter of every joint
     values = fit_values(arm.errors, slopes, start, arm.sizes, floors, nearest=arm.nearest, iterations=ITERATIONS)
     here = arm.errors(values)
     half, _ = half_widths(here, coupled(values, here), floors, np.diag(arm.sizes))
     names = [(j, name) for j, c in coordinates.items() for name in (g[0] for g in c.groups)]
-    return FittedLaws(arm.write(values), dict(zip(names, map(float, half), strict=True)), _rms(here))
+    of_laws = dict(zip(names, map(float, half), strict=False))
+    share = None if body is None else (float(values[-1]), float(half[-1]))
+    return FittedLaws(laid.write(values[: len(names)]), of_laws, _rms(here), share)
 
 
 def _rms(errors: list[np.ndarray]) -> np.ndarray:

@@ -44,11 +44,11 @@ class ArmLaws:
 
     @property
     def sizes(self) -> np.ndarray:
-        return np.concatenate([c.sizes for c in self.free.values()])
+        return np.concatenate([np.zeros(0), *(c.sizes for c in self.free.values())])
 
     def read(self) -> np.ndarray:
         """The values of the start, shape (k,)."""
-        return np.concatenate([c.read(self.laws[j]) for j, c in self.free.items()])
+        return np.concatenate([np.zeros(0), *(c.read(self.laws[j]) for j, c in self.free.items())])
 
     def write(self, values: np.ndarray) -> np.ndarray:
         """The laws of given values, shape (dof, len(LAW)), within their bounds."""
@@ -60,7 +60,9 @@ class ArmLaws:
 
     def nearest(self, values: np.ndarray) -> np.ndarray:
         """The nearest values within bounds."""
-        low, high = (np.concatenate([getattr(c, b) for c in self.free.values()]) for b in ("lower", "upper"))
+        low, high = (
+            np.concatenate([np.zeros(0), *(getattr(c, b) for c in self.free.values())]) for b in ("lower", "upper")
+        )
         return np.clip(values, low, high)
 
     def errors(self, values: np.ndarray) -> list[np.ndarray]:
@@ -71,7 +73,7 @@ class ArmLaws:
         counts = [len(c.groups) for c in self.free.values()]
         first = np.cumsum([0, *counts])
         out = [np.zeros((len(e), int(first[-1]))) for e in here]
-        for i in range(max(counts)):
+        for i in range(max(counts, default=0)):
             columns = [f + i for f, n in zip(first, counts, strict=False) if i < n]
             step = np.zeros(int(first[-1]))
             step[columns] = DIFFERENCE * self.sizes[columns]
