@@ -145,6 +145,13 @@ def test_an_unknown_robot_is_refused(robot, files, tmp_path, capsys) -> None:
     assert robot in refuse([files["fit"], "--robot", robot], tmp_path / "out", capsys)
 
 
+@pytest.mark.parametrize("option", [("--gains", "2"), ("--actuator", "servo.toml")])
+def test_what_concerns_servos_is_refused_beside_torque(option, files, tmp_path, capsys) -> None:
+    told = refuse([files["fit"], "--robot", files["robot"], *option], tmp_path / "out", capsys)
+    assert f"{option[0]}: the recordings hold torque" in told
+    assert "--route motion" in told
+
+
 def test_a_missing_recording_is_refused(files, tmp_path, capsys) -> None:
     complaint = refuse([str(tmp_path / "gone.csv"), "--robot", files["robot"]], tmp_path / "out", capsys)
     assert "gone.csv" in complaint

@@ -85,6 +85,23 @@ def test_values_that_no_recording_tells_get_a_command_that_would() -> None:
     assert not any(entry.is_enough for entry in found.to_record)
 
 
+def test_recordings_at_another_gain_are_compared_at_it() -> None:
+    twice = ServoDrivenModel(ARM, np.tile(law_vector(**TRUE | {"kp": 36.0, "kd": 1.0}), (2, 1)), (True, True))
+    time = np.arange(1500) / 50
+    command = 0.4 * np.sin(np.outer(time, [1.3, 2.1]))
+    again = Recording(time, twice.rollout(command, time, command[0]), None, ARM.joints, command=command)
+    sets = [driven(kp=36.0, kd=1.0), driven()]
+    told = compare_motion(sets, ["stiff", "right"], [again, recorded(30.0)], gains=[2.0, 1.0])
+    assert {joint.best for joint in told.joints} == {1}
+    assert {j.best for j in compare_motion(sets, ["stiff", "right"], [again]).joints} == {0}
+
+
+@pytest.mark.parametrize("gains", [[1.0], [1.0, 0.0], [1.0, -2.0], [1.0, float("inf")]])
+def test_gains_that_are_not_one_positive_number_a_recording_are_refused(gains: list[float]) -> None:
+    with pytest.raises(LagnetError, match="2 positive numbers"):
+        compare_motion([driven(), driven(kp=9.0)], ["a", "b"], [recorded(5.0)] * 2, gains=gains)
+
+
 def test_a_set_without_gains_is_refused() -> None:
     with pytest.raises(LagnetError, match="gives no position gain"):
         servo_driven(ARM, "arm.urdf")
@@ -101,5 +118,7 @@ def test_the_command_pairs_robots_and_servos(tmp_path: Path, capsys: pytest.Capt
     assert main(words + files) == DONE
     assert f"best: soft.toml on {', '.join(ARM.joints)}" in capsys.readouterr().out
     assert main(words + ["--robot", "ur5"] * 2 + files) == BAD_INPUT
+    assert main([*words, *files, "--gains", "1,2"]) == BAD_INPUT
+    assert "the gains 1, 2 do not fit" in capsys.readouterr().err
     assert main(words) == BAD_INPUT
     assert "gives no position gain" in capsys.readouterr().err

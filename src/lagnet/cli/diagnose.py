@@ -74,7 +74,7 @@ def command(
         )
     if simulated and hold:
         raise LagnetError("--hold holds joints of --robot; a simulator's recordings have those that they have")
-    from lagnet.cli.parts.motion import diagnose_on_motion, route_of
+    from lagnet.cli.parts.motion import diagnose_on_motion, refuse_servo_options, route_of
     from lagnet.cli.parts.replayed import replay_held_out, replay_settings
     from lagnet.cli.parts.simulated import nominal_from
     from lagnet.cli.shared.console import above_zero, not_negative, numbers, say
@@ -107,6 +107,7 @@ def command(
     if on_motion:
         factors = numbers(gains, "--gains") if gains else None
         return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
+    refuse_servo_options(actuator, gains, "add --route motion, or leave it out")
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))
 

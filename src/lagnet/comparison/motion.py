@@ -81,7 +81,11 @@ def servo_driven(model: Any, name: str, servo: NominalServo | None = None) -> Se
 
 
 def compare_motion(
-    models: Sequence[ServoDrivenModel], names: Sequence[str], recordings: Sequence[Recording], seed: int = 0
+    models: Sequence[ServoDrivenModel],
+    names: Sequence[str],
+    recordings: Sequence[Recording],
+    seed: int = 0,
+    gains: Sequence[float] | None = None,
 ) -> MotionComparison:
     """Hold several sets of bodies and servos against recordings of commands and positions.
 
@@ -90,12 +94,14 @@ def compare_motion(
         names: what they are called.
         recordings: with commands.
         seed: of the bootstrap.
+        gains: of the controller in each recording over those of the sets' servos; None: 1 in all.
 
     Raises:
-        LagnetError: fewer than two models, one of them twice, other joints, no commands, or too little motion.
+        LagnetError: fewer than two models, one of them twice, other joints, no commands, too little motion, or gains
+            that are not one positive number a recording.
     """
     check_models(models, names)
-    problems = [pose_motion_problem(recordings, kinematic_tree(m.nominal)) for m in models]
+    problems = [pose_motion_problem(recordings, kinematic_tree(m.nominal), gains) for m in models]
     joints, differences, to_record, length, blocks = [], [], [], 0.0, 0
     for j in _moving(problems[0]):
         windows = problems[0].windows(j)

@@ -37,6 +37,17 @@ def route_of(asked: str | None, recordings: Sequence[Recording]) -> str:
     return asked or ("motion" if commanded and without_torque else "torque")
 
 
+def refuse_servo_options(actuator: object, gains: object, next_step: str | None = None) -> None:
+    """Refuses options of servos where recordings are judged by torque.
+
+    Raises:
+        LagnetError: names the option.
+    """
+    for value, option in ((actuator, "--actuator"), (gains, "--gains")):
+        if value:
+            raise LagnetError("the recordings hold torque, to which no servo matters", where=option, next_step=next_step)
+
+
 def diagnose_on_motion(
     fit: Sequence[Recording],
     robot: Any,

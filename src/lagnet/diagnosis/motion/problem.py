@@ -120,8 +120,12 @@ def pose_motion_problem(
         continued: so many recordings at the end may be the last stretches of as many at the beginning.
 
     Raises:
-        DiagnosisError: a recording without commands, or with fewer than ten samples in every trajectory.
+        DiagnosisError: a recording without commands, fewer than ten samples in every trajectory, or gains that are not
+            one positive number a recording.
     """
+    if gains is not None and (len(gains) != len(recordings) or not all(0.0 < g < np.inf for g in gains)):
+        step = f"give {len(recordings)} positive numbers, one a recording in their order"
+        raise DiagnosisError(f"the gains {', '.join(f'{g:g}' for g in gains)} do not fit", next_step=step)
     parts = [(i, part) for i, recording in enumerate(recordings) for part in recording.parts() if len(part) >= 10]
     if not parts:
         raise DiagnosisError("no trajectory has ten samples", next_step="give longer recordings")
