@@ -16,11 +16,10 @@ from tests.tracking.fleets import START
 from lagnet.errors import EffectError, LagnetError
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.writing import write_recording
-from lagnet.servos.parameters import INDEX
 from lagnet.tracking.engine import EngineSettings
 from lagnet.tracking.manifest import Make
 from lagnet.tracking.servos.fit import fit_servos, owner_of
-from lagnet.tracking.servos.new_physics import with_new_servo_effects
+from lagnet.tracking.servos.new_physics import with_new_payload
 from lagnet.tracking.servos.tracked import common_followed, followed_from_plain
 from lagnet.tracking.servos.work import calibrated_servos, on_motion
 from lagnet.tracking.statistics.followed_law import lower_bound, stage_of
@@ -106,33 +105,6 @@ def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, s
     assert found.analysis.events[0].date == START + timedelta(days=28)
 
 
-def test_a_fault_that_the_calibration_did_not_show_is_followed_from_its_first_recording_on(bench, scheduler):
-    folder = bench.folder / "delayed"
-    write_recording(bench.first, folder / "calibration.csv")
-    for week in range(8):
-        late = {"delay": 40} if week >= 3 else {}
-        write_recording(
-            pendulum.record(bench.healthy, 20.0, seed=40 + week, **late),
-            folder / f"{START + timedelta(days=7 * week):%Y-%m-%d}.csv",
-        )
-    (folder / "fleet.toml").write_text(MANIFEST)
-    found = track(folder / "fleet.toml", folder / "out", EngineSettings(scheduler=scheduler))
-    assert [(e.effect, e.joint, e.date) for e in found.analysis.events] == [
-        ("command_delay", "servo", START + timedelta(days=21))
-    ]
-    delays = [row.value for row in found.rows if row.effect == "command_delay"]
-    assert delays == pytest.approx([0.0] * 3 + [0.04] * 5, abs=0.003)
-
-
-def test_what_one_search_names_once_is_not_followed(bench):
-    once = [{"effect": "command_delay", "joint": 0, "values": {"T": 0.02}}]
-    assert with_new_servo_effects(bench.set, [once, [], []]) is bench.set
-    larger = with_new_servo_effects(bench.set, [once, [], once])
-    assert larger.servos[0].effects == ("coulomb_friction", "command_delay")
-    assert ("delay",) in larger.servos[0].free
-    assert larger.laws[0, INDEX["delay"]] == 0.02
-
-
 def test_a_payload_is_followed_by_its_share(bench):
     body = 0.5 * bench.robot.inertial_parameters()[-1]
     loaded = replace(bench.set, body=tuple(map(float, body)))
@@ -147,10 +119,10 @@ def test_a_payload_is_followed_by_its_share(bench):
 
 
 def test_a_payload_that_is_found_again_and_again_is_followed(bench):
-    found = [{"effect": "payload", "joint": None, "values": {}, "body": [m, *[0.0] * 9]} for m in (0.1, 0.3, 0.2)]
-    larger = with_new_servo_effects(bench.set, [[e] for e in found])
+    found = [{"body": [m, *[0.0] * 9]} for m in (0.1, 0.3, 0.2)]
+    larger = with_new_payload(bench.set, [[e] for e in found])
     assert larger.body[0] == 0.2
-    assert with_new_servo_effects(bench.set, [[found[0]], [], []]) is bench.set
+    assert with_new_payload(bench.set, [[found[0]], [], []]) is bench.set
 
 
 def test_robots_without_calibration_share_what_half_of_them_show(bench):

@@ -17,7 +17,7 @@ from lagnet.errors import LagnetError
 from lagnet.tracking.engine import Engine, EngineSettings, open_engine
 from lagnet.tracking.finished import read_finished, remove_parts
 from lagnet.tracking.manifest import Make, Manifest, TrackedRecording, read_manifest
-from lagnet.tracking.servos.new_physics import with_new_servo_effects
+from lagnet.tracking.servos.new_physics import with_new_payload
 from lagnet.tracking.servos.tracked import Followed, TrackedServos, common_followed, followed_from_plain
 from lagnet.tracking.statistics.analyse import Analysis, analyse
 from lagnet.tracking.statistics.series import Observation
@@ -179,7 +179,7 @@ def _with_new_physics(
 def _larger(known: Followed, found: Sequence[Sequence[Mapping[str, Any]]]) -> Followed:
     """The set with the new physics of a robot's recordings; `known` itself where there is none."""
     if isinstance(known, TrackedServos):
-        return with_new_servo_effects(known, found)
+        return with_new_payload(known, found)
     new = new_physics(known, [[effect_from_plain(e) for e in effects] for effects in found])
     return known.with_new(new) if new else known
 

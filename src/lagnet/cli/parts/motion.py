@@ -45,7 +45,9 @@ def refuse_servo_options(actuator: object, gains: object, next_step: str | None 
     """
     for value, option in ((actuator, "--actuator"), (gains, "--gains")):
         if value:
-            raise LagnetError("the recordings hold torque, to which no servo matters", where=option, next_step=next_step)
+            raise LagnetError(
+                "the recordings hold torque, to which no servo matters", where=option, next_step=next_step
+            )
 
 
 def diagnose_on_motion(
