@@ -130,6 +130,9 @@ def test_robots_without_calibration_share_what_half_of_them_show(bench):
     common = common_followed([bench.set, bench.set, plain], "servo")
     assert common.servos[0].free == bench.set.servos[0].free
     assert common_followed([bench.set, plain, plain], "servo").servos[0].free == ()
+    loaded = [replace(bench.set, body=(m, x, *[0.0] * 8)) for m, x in ((0.1, 0.3), (0.2, 0.1), (0.3, 0.2))]
+    assert common_followed(loaded, "servo").body == loaded[1].body  # mass and centre of one robot
+    assert common_followed([loaded[0], plain, plain], "servo").body == ()
 
 
 def test_recordings_of_two_kinds_are_told(bench):

@@ -19,7 +19,7 @@ from lagnet.rigid_body.kinematic_tree import kinematic_tree
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 from lagnet.servos.parameters import INDEX, KP, NAMES
 from lagnet.tracking.fixed_fit import SHARE, ParameterRow
-from lagnet.tracking.servos.tracked import PAYLOAD, TrackedServo, TrackedServos
+from lagnet.tracking.servos.tracked import PAYLOAD, STILL, TrackedServo, TrackedServos
 from lagnet.types import joint_types_of
 
 
@@ -69,7 +69,7 @@ def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain:
 
 
 def _moves(problem: MotionProblem, joint: int) -> bool:
-    return float(np.ptp(problem.series[joint].q)) > 1e-6
+    return float(np.ptp(problem.series[joint].q)) > STILL
 
 
 def _rows(

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
-from lagnet.tracking.servos.tracked import PAYLOAD, TrackedServos, body_of
+from lagnet.tracking.servos.tracked import PAYLOAD, TrackedServos, body_of, middle_body
 from lagnet.tracking.tracked_set import repeated
 
 
@@ -40,5 +40,4 @@ def with_new_payload(known: TrackedServos, found: Sequence[Sequence[Mapping[str,
     """
     if not repeated([[(PAYLOAD, None) for _ in row] for row in found]):
         return known
-    bodies = sorted(tuple(map(float, one["body"])) for row in found for one in row)
-    return replace(known, body=bodies[len(bodies) // 2])  # medians of mass and centre need not go together
+    return replace(known, body=middle_body([tuple(map(float, one["body"])) for row in found for one in row]))

@@ -103,6 +103,11 @@ def body_of(found: MotionDiagnosis) -> tuple[float, ...]:
     return tuple(map(float, last - nominal)) if np.any(last != nominal) else ()
 
 
+def middle_body(bodies: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
+    """The body whose mass lies in the middle: medians of mass and centre by themselves need not go together."""
+    return sorted(bodies)[len(bodies) // 2]
+
+
 def _servo(found: JointDiagnosis | None, law: np.ndarray) -> TrackedServo:
     if found is None:
         return TrackedServo(tuple(map(float, law)))
@@ -123,7 +128,7 @@ def common_servos(sets: Sequence[TrackedServos]) -> TrackedServos:
     servos = tuple(_common([s.servos[j] for s in sets]) for j in range(len(sets[0].servos)))
     floors, left = (tuple(map(float, np.median([getattr(s, n) for s in sets], axis=0))) for n in ("floors", "left"))
     loaded = [s.body for s in sets if s.body]
-    body = tuple(map(float, np.median(loaded, axis=0))) if len(loaded) >= SHARE * len(sets) else ()
+    body = middle_body(loaded) if loaded and len(loaded) >= SHARE * len(sets) else ()
     return TrackedServos(servos, floors, left, body, float(np.median([s.voltage for s in sets])))
 
 

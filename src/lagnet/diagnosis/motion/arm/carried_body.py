@@ -17,7 +17,7 @@ class LoadedArm:
     """An arm whose last link carries a share of a body: 0 where it is absent, 1 where it is as first found.
 
     Args:
-        arm: free parameters of the laws; its problem holds the bodies without the one that is carried.
+        arm: free parameters of the laws; without the body that is carried.
         body: its ten inertial parameters, shape (10,).
     """
 
@@ -46,8 +46,4 @@ class LoadedArm:
         return [np.column_stack([o, (m - e) / DIFFERENCE]) for o, m, e in zip(own, moved, here, strict=True)]
 
     def _at(self, share: float) -> ArmLaws:
-        runs = self.arm.runs
-        bodies = runs.problem.tree.bodies.copy()
-        bodies[-1] += share * self.body
-        problem = replace(runs.problem, tree=replace(runs.problem.tree, bodies=bodies))
-        return replace(self.arm, runs=replace(runs, problem=problem))
+        return replace(self.arm, body=share * self.body)

@@ -36,11 +36,13 @@ class ArmLaws:
         runs: the rollouts.
         laws: shape (dof, len(LAW)), where they start.
         free: free parameters of each joint that has any.
+        body: inertial parameters that the last link carries beside the nominal ones, shape (10,).
     """
 
     runs: ArmRuns
     laws: np.ndarray
     free: Mapping[int, Coordinates]
+    body: np.ndarray | None = None
 
     @property
     def sizes(self) -> np.ndarray:
@@ -66,7 +68,7 @@ class ArmLaws:
         return np.clip(values, low, high)
 
     def errors(self, values: np.ndarray) -> list[np.ndarray]:
-        return self.runs.errors(self.write(values))
+        return self.runs.errors(self.write(values), self.body)
 
     def sensitivities(self, values: np.ndarray, here: list[np.ndarray]) -> list[np.ndarray]:
         """∂q̂_j/∂x of each joint by its own parameters in units of their sizes, each of shape (n, k)."""
