@@ -17,6 +17,7 @@ from lagnet.diagnosis.estimation.data_subsets import parts_of
 from lagnet.diagnosis.estimation.gauss_newton import blocks_of
 from lagnet.diagnosis.estimation.long_run import long_run_excess
 from lagnet.diagnosis.estimation.refit import Tangent, tangent_at
+from lagnet.diagnosis.estimation.unselected_laws import unselected_laws
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.normal_equations import inverse, normal
 from lagnet.effects.catalogue import effect_named
@@ -37,9 +38,10 @@ def with_convention(effect: NamedEffect, errors: dict[str, float]) -> dict[str, 
 
 
 def interval_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> list[dict[str, float]]:
-    """By effect and parameter, √(δp² + h_L² − h²): what widens the half-width h of a 95 % interval.
+    """By effect and parameter, √(δp² + h_L² − h² + t² Δp²): what widens the half-width h of a 95 % interval.
 
-    δp is the misspecification error, h_L the half-width from longer blocks (`long_run_excess`).
+    δp is the misspecification error, h_L the half-width from longer blocks (`long_run_excess`), Δp the largest shift
+    beside a usual law that was not selected (`unselected_laws`).
 
     Args:
         problem: as it was fitted.
@@ -48,7 +50,7 @@ def interval_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.
     """
     tangent = tangent_at(problem, effects, sigma)
     whole = _Influence(problem, tangent, _as_it_is)
-    excess = long_run_excess(whole.blocks, whole.counts)
+    excess = long_run_excess(whole.blocks, whole.counts) + _beside_unselected(problem, tangent, whole, effects, sigma)
     return _by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma) + excess))
 
 
@@ -66,7 +68,7 @@ def _misspecification(
 ) -> np.ndarray:
     """t² times the excess variance of the shifts between parts of the motion and all of it, shape (n_parameters,)."""
     of = np.repeat(np.arange(len(effects)), [len(e.parameters()) for e in effects])
-    quantile = float(student.ppf(0.975, max(2, whole.blocks.shape[0] - 1)))
+    quantile = _quantile(whole)
     variance = np.zeros(of.size)
     for view, speaks_for in _views(problem, tangent, effects, sigma):
         part = _Influence(problem, tangent, view)
@@ -75,6 +77,25 @@ def _misspecification(
         tells = (LEAST_SAY * part.variance <= whole.variance) & (part.variance > LEAST_SAY * whole.variance)
         variance = np.where(tells & speaks_for[of], np.maximum(variance, excess), variance)
     return quantile**2 * variance
+
+
+def _beside_unselected(
+    problem: Problem, tangent: Tangent, whole: _Influence, effects: Sequence[NamedEffect], sigma: np.ndarray
+) -> np.ndarray:
+    """t² times the largest squared shift beside a usual law that was not selected, shape (n_parameters,)."""
+    shifts = np.zeros(whole.variance.size)
+    for columns in unselected_laws(problem, tangent.pieces, effects, sigma):
+
+        def beside(n: int, r: np.ndarray, j: np.ndarray, further: list[np.ndarray] = columns) -> Linear:
+            return r, np.concatenate([j, further[n]], axis=2)
+
+        moved = _Influence(problem, tangent, beside).blocks.sum(axis=0) - whole.blocks.sum(axis=0)
+        shifts = np.maximum(shifts, moved**2)
+    return _quantile(whole) ** 2 * shifts
+
+
+def _quantile(whole: _Influence) -> float:
+    return float(student.ppf(0.975, max(2, whole.blocks.shape[0] - 1)))
 
 
 def _as_it_is(n: int, residuals: np.ndarray, jacobian: np.ndarray) -> Linear:
