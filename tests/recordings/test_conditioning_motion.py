@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
 from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
 from lagnet.recordings.conditioning.condition import condition, motion_at_samples
 from lagnet.recordings.conditioning.noise import white_noise
-from lagnet.recordings.conditioning.smoothing import derivative, even_clock, low_pass, resample
+from lagnet.recordings.conditioning.smoothing import ORDER, derivative, even_clock, low_pass, resample
 from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
 
@@ -246,3 +247,11 @@ def test_several_recordings_keep_their_index_and_share_one_rate() -> None:
     ready = condition([first, second])
     assert [s.recording for s in ready.stretches] == [0, 1]
     assert ready.rate == pytest.approx(RATE)
+
+
+@pytest.mark.parametrize("shape", [(40,), (400, 3), (1000, 2)])
+def test_the_low_pass_is_scipys_forth_and_back(shape: tuple[int, ...]) -> None:
+    x = np.random.default_rng(3).normal(size=shape)
+    sections = butter(ORDER, 5.0, fs=100.0, output="sos")
+    expected = sosfiltfilt(sections, x, axis=0, padlen=min(shape[0] - 1, 40))
+    np.testing.assert_array_equal(low_pass(x, 100.0, 5.0), expected)

@@ -83,20 +83,30 @@ class GaussNewton:
 
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
-        effects = self.slots.named(x)
-        sums = [Superposition(motion, effects) for motion in self.motions]
-        tables = [np.zeros((p.keep.size, self.problem.n_dof, int(free.sum()))) for p in self.pieces]
-        for column, i in enumerate(np.flatnonzero(free)):
-            step = self._step(x, int(i))
-            others = self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
-            changed = [n for n, (a, b) in enumerate(zip(effects, others, strict=True)) if a.key != b.key]
-            for piece, total, table in zip(self.pieces, sums, tables, strict=True):
-                change = total.change(changed[0], others[changed[0]]) if changed else {}
-                if change:
-                    joints = list(change)
-                    moved = self.problem.reduce(piece, np.column_stack(list(change.values())))
-                    table[:, joints, column] = -moved * piece.counts[:, joints] / self.sigma[joints] / step
-        return tables
+        sums = [Superposition(motion, self.slots.named(x)) for motion in self.motions]
+        moves = [self._moved(x, int(i)) for i in np.flatnonzero(free)]
+        return [self._slopes(*pair, moves) for pair in zip(self.pieces, sums, strict=True)]
+
+    def _moved(self, x: np.ndarray, i: int) -> tuple[float, int | None, NamedEffect | None]:
+        """Step of a coordinate, number of the effect that it changes, and that effect; None where nothing changes."""
+        step = self._step(x, i)
+        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
+        at = self.slots.of(n)
+        own = np.where(np.arange(x.size) == i, x + step, x)[at]
+        effect, other = (self.slots.effects[n].at_coordinates(c) for c in (x[at], own))
+        return (step, n, other) if other.key != effect.key else (step, None, None)
+
+    def _slopes(self, piece: Segment, total: Superposition, moves: Sequence[tuple]) -> np.ndarray:
+        """∂e/∂x of one segment; all its columns are filtered together."""
+        table = np.zeros((piece.keep.size, self.problem.n_dof, len(moves)))
+        changes = [({} if n is None else total.change(n, other), step) for step, n, other in moves]
+        places = [(j, column) for column, (change, _) in enumerate(changes) for j in change]
+        if not places:
+            return table
+        moved = self.problem.reduce(piece, np.column_stack([changes[c][0][j] / changes[c][1] for j, c in places]))
+        for (j, column), signal in zip(places, moved.T, strict=True):
+            table[:, j, column] = -signal * piece.counts[:, j] / self.sigma[j]
+        return table
 
     def _step(self, x: np.ndarray, i: int) -> float:
         """By how much a coordinate moves, away from its upper bound."""

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfilt, sosfilt_zi
 
 ORDER = 4  # of the Butterworth filter, doubled by running forth and back
 SETTLING = 2.0  # time for which the filter remembers an edge, in periods of its bandwidth
@@ -20,17 +20,31 @@ def low_pass(x: np.ndarray, rate: float, bandwidth: float) -> np.ndarray:
         x: shape (n,) or (n, k), samples on an even clock.
         rate: sample rate [Hz].
         bandwidth: cut-off [Hz], half power of one of the two passes; at or above 0.45 rate nothing is filtered.
+
+    The same as `scipy.signal.sosfiltfilt`, which computes the filter's state at rest anew in every call: on a few
+    columns that takes as long as the filter.
     """
     if bandwidth >= 0.45 * rate or x.shape[0] < SHORTEST:
         return x
     pad = min(x.shape[0] - 1, max(3 * (2 * ORDER + 1), int(2.0 * rate / bandwidth)))
-    return sosfiltfilt(_sections(rate, bandwidth), x, axis=0, padlen=pad)
+    rows = np.ascontiguousarray(x.reshape(x.shape[0], -1).T, dtype=float)
+    before, after = 2.0 * rows[:, :1] - rows[:, pad:0:-1], 2.0 * rows[:, -1:] - rows[:, -2 : -pad - 2 : -1]
+    forth = _one_way(np.concatenate([before, rows, after], axis=1), rate, bandwidth)
+    both = _one_way(forth[:, ::-1], rate, bandwidth)[:, ::-1]
+    return np.ascontiguousarray(both[:, pad:-pad].T).reshape(x.shape)
+
+
+def _one_way(rows: np.ndarray, rate: float, bandwidth: float) -> np.ndarray:
+    """The filter along each row, settled on its first value."""
+    sections, settled = _sections(rate, bandwidth)
+    return sosfilt(sections, rows, axis=1, zi=settled[:, None, :] * rows[None, :, :1])[0]
 
 
 @lru_cache(maxsize=64)
-def _sections(rate: float, bandwidth: float) -> np.ndarray:
-    """The filter's second-order sections; a diagnosis asks for the same few thousands of times."""
-    return np.asarray(butter(ORDER, bandwidth, fs=rate, output="sos"))
+def _sections(rate: float, bandwidth: float) -> tuple[np.ndarray, np.ndarray]:
+    """The filter's second-order sections and their state at rest; a diagnosis asks for the same thousands of times."""
+    sections = np.asarray(butter(ORDER, bandwidth, fs=rate, output="sos"))
+    return sections, np.asarray(sosfilt_zi(sections))
 
 
 def even_clock(time: np.ndarray, rate: float) -> np.ndarray:
