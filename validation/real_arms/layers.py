@@ -43,7 +43,7 @@ def cases(data: Path) -> dict[str, Callable[[], Case]]:
 
     def files(arm) -> Case:
         robot = load_any(data / arm.folder / arm.urdf)
-        return robot, *([_read(data / arm.folder / f, robot, arm) for f in part] for part in (arm.fit, arm.holdout))
+        return robot, *([read(data / arm.folder / f, robot, arm) for f in part] for part in (arm.fit, arm.holdout))
 
     def panda() -> Case:
         robot = load_any("panda")
@@ -52,21 +52,21 @@ def cases(data: Path) -> dict[str, Callable[[], Case]]:
 
     def ur10() -> Case:
         robot = load_any("ur10")
-        return robot, *_cut(read_joint_states(data / "bags" / "ur10_exciting_trajectory.db3", robot.joints), 0.75)
+        return robot, *cut(read_joint_states(data / "bags" / "ur10_exciting_trajectory.db3", robot.joints), 0.75)
 
     def loaded(index: int) -> Case:
         robot = load_any(data / UR10E.folder / UR10E.urdf)
-        return robot, *_cut(_read(data / "ur10e_loaded" / f"loaded_{index}.csv.gz", robot, UR10E), 0.5)
+        return robot, *cut(read(data / "ur10e_loaded" / f"loaded_{index}.csv.gz", robot, UR10E), 0.5)
 
     arms = {arm.name: (lambda arm=arm: files(arm)) for arm in (EMPS, TX40, UR10E)}
     return {**arms, "panda": panda, "ur10": ur10, "loaded_0": lambda: loaded(0), "loaded_1": lambda: loaded(1)}
 
 
-def _read(path: Path, robot: Any, arm: Any) -> Recording:
+def read(path: Path, robot: Any, arm: Any) -> Recording:
     return load_recording(path, robot=robot, torque_constant=arm.torque_constant)
 
 
-def _cut(recording: Recording, share: float) -> tuple[list[Recording], list[Recording]]:
+def cut(recording: Recording, share: float) -> tuple[list[Recording], list[Recording]]:
     edge = int(share * len(recording))
     return [recording.rows(slice(0, edge))], [recording.rows(slice(edge, None))]
 

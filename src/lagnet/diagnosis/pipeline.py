@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
 from lagnet.diagnosis.estimation.misspecification import interval_errors, widened, with_convention
 from lagnet.diagnosis.estimation.refit import Refit
+from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.free_bodies import (
     are_scaled_everywhere,
     beside_free_bodies,
@@ -109,16 +110,21 @@ def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
 
 
 def with_misspecification(state: DiagnosisState) -> DiagnosisState:
-    """The same with 95 % intervals √(h_L² + δp²), of long blocks and of misspecification; names and values stay."""
+    """The same with 95 % intervals √(h_L² + δp² + t² Δp²); names and values stay.
+
+    h_L is of long blocks, δp the misspecification error, Δp the shift beside laws that were not selected.
+    """
     effects = state.effects
     if not effects:
         return state
     problem = lasting(state.problem, state.events)
     power = np.maximum(state.selection.fit.sse, state.selection.scales.noise_power)
-    found = interval_errors(problem, effects, np.sqrt(power / state.equations.samples))
-    errors = [with_convention(*pair) for pair in zip(effects, found, strict=True)]
+    sigma = np.sqrt(power / state.equations.samples)
+    errors = [with_convention(*pair) for pair in zip(effects, interval_errors(problem, effects, sigma), strict=True)]
     old = (*state.refit.intervals, *(p.intervals for p in state.transients))
     wide = [widened(*pair) for pair in zip(old, errors, strict=True)]
+    shifts = shifts_beside_unselected(problem, effects, sigma)
+    wide = [short_of_absence(*one) for one in zip(effects, wide, shifts, strict=True)]
     n = len(state.refit.effects)
     refit = Refit(state.refit.effects, tuple(wide[:n]), state.refit.correlations)
     transients = tuple(replace(p, intervals=w) for p, w in zip(state.transients, wide[n:], strict=True))

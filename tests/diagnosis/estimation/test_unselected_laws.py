@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 from tests.diagnosis.posed import pose
 
-from lagnet.diagnosis.estimation.misspecification import interval_errors
 from lagnet.diagnosis.estimation.refit import refit
-from lagnet.diagnosis.estimation.unselected_laws import USUAL, unselected_laws
+from lagnet.diagnosis.estimation.unselected_laws import (
+    USUAL,
+    shifts_beside_unselected,
+    short_of_absence,
+    unselected_laws,
+)
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
@@ -19,10 +23,8 @@ VISCOUS = NamedEffect("viscous_friction", JOINT, {"Fv": 2.0})
 def interval(posed, *effects: NamedEffect) -> tuple[float, float]:
     """The widened interval of the first parameter of the first effect."""
     found = refit(posed.problem, effects, posed.noise)
-    wider = next(iter(interval_errors(posed.problem, found.effects, posed.noise)[0].values()))
-    low, high = next(iter(found.intervals[0].values()))
-    half = float(np.hypot(0.5 * (high - low), wider))
-    return 0.5 * (low + high) - half, 0.5 * (low + high) + half
+    shifts = shifts_beside_unselected(posed.problem, found.effects, posed.noise)
+    return next(iter(short_of_absence(found.effects[0], found.intervals[0], shifts[0]).values()))
 
 
 def test_an_interval_holds_the_truth_where_a_companion_law_has_no_name(plant, arm, at) -> None:
@@ -50,6 +52,15 @@ def test_laws_that_are_named_or_held_by_one_that_is_are_left_out(plant, arm, at)
         assert table[0].shape == (posed.problem.fit[0].keep.size, arm.n_dof, 1)
         assert np.any(table[0][:, JOINT])
         assert not np.any(np.delete(table[0], JOINT, axis=1))
+
+
+def test_a_shift_leaves_the_absence_of_an_effect_outside() -> None:
+    assert short_of_absence(COULOMB, {"Fc": (3.0, 5.0)}, {"Fc": 1.0})["Fc"] == (4.0 - 2**0.5, 4.0 + 2**0.5)
+    low, high = short_of_absence(COULOMB, {"Fc": (3.0, 5.0)}, {"Fc": 40.0})["Fc"]
+    assert 0.0 < low < 1.0
+    assert 7.0 < high < 8.0
+    open_before = {"Fc": (-1.0, 9.0)}
+    assert short_of_absence(COULOMB, open_before, {"Fc": 0.5}) == open_before  # the size alone is uncertain
 
 
 def test_the_usual_laws_are_linear_and_of_one_joint() -> None:

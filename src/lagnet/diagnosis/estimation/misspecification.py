@@ -17,7 +17,6 @@ from lagnet.diagnosis.estimation.data_subsets import parts_of
 from lagnet.diagnosis.estimation.gauss_newton import blocks_of
 from lagnet.diagnosis.estimation.long_run import long_run_excess
 from lagnet.diagnosis.estimation.refit import Tangent, tangent_at
-from lagnet.diagnosis.estimation.unselected_laws import unselected_laws
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.normal_equations import inverse, normal
 from lagnet.effects.catalogue import effect_named
@@ -38,10 +37,9 @@ def with_convention(effect: NamedEffect, errors: dict[str, float]) -> dict[str, 
 
 
 def interval_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> list[dict[str, float]]:
-    """By effect and parameter, √(δp² + h_L² − h² + t² Δp²): what widens the half-width h of a 95 % interval.
+    """By effect and parameter, √(δp² + h_L² − h²): what widens the half-width h of a 95 % interval.
 
-    δp is the misspecification error, h_L the half-width from longer blocks (`long_run_excess`), Δp the largest shift
-    beside a usual law that was not selected (`unselected_laws`).
+    δp is the misspecification error, h_L the half-width from longer blocks (`long_run_excess`).
 
     Args:
         problem: as it was fitted.
@@ -49,9 +47,9 @@ def interval_errors(problem: Problem, effects: Sequence[NamedEffect], sigma: np.
         sigma: shape (dof,), the joints' weights in the fit [N m].
     """
     tangent = tangent_at(problem, effects, sigma)
-    whole = _Influence(problem, tangent, _as_it_is)
-    excess = long_run_excess(whole.blocks, whole.counts) + _beside_unselected(problem, tangent, whole, effects, sigma)
-    return _by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma) + excess))
+    whole = Influence(problem, tangent, as_it_is)
+    excess = long_run_excess(whole.blocks, whole.counts)
+    return by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma) + excess))
 
 
 def misspecification_errors(
@@ -59,19 +57,19 @@ def misspecification_errors(
 ) -> list[dict[str, float]]:
     """By effect and parameter, the misspecification error δp alone; arguments as of `interval_errors`."""
     tangent = tangent_at(problem, effects, sigma)
-    whole = _Influence(problem, tangent, _as_it_is)
-    return _by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma)))
+    whole = Influence(problem, tangent, as_it_is)
+    return by_effect(effects, np.sqrt(_misspecification(problem, tangent, whole, effects, sigma)))
 
 
 def _misspecification(
-    problem: Problem, tangent: Tangent, whole: _Influence, effects: Sequence[NamedEffect], sigma: np.ndarray
+    problem: Problem, tangent: Tangent, whole: Influence, effects: Sequence[NamedEffect], sigma: np.ndarray
 ) -> np.ndarray:
     """t² times the excess variance of the shifts between parts of the motion and all of it, shape (n_parameters,)."""
     of = np.repeat(np.arange(len(effects)), [len(e.parameters()) for e in effects])
-    quantile = _quantile(whole)
+    quantile = whole.quantile
     variance = np.zeros(of.size)
     for view, speaks_for in _views(problem, tangent, effects, sigma):
-        part = _Influence(problem, tangent, view)
+        part = Influence(problem, tangent, view)
         moved = part.blocks - whole.blocks
         excess = moved.sum(axis=0) ** 2 - quantile**2 * np.sum(moved**2, axis=0)
         tells = (LEAST_SAY * part.variance <= whole.variance) & (part.variance > LEAST_SAY * whole.variance)
@@ -79,30 +77,13 @@ def _misspecification(
     return quantile**2 * variance
 
 
-def _beside_unselected(
-    problem: Problem, tangent: Tangent, whole: _Influence, effects: Sequence[NamedEffect], sigma: np.ndarray
-) -> np.ndarray:
-    """t² times the largest squared shift beside a usual law that was not selected, shape (n_parameters,)."""
-    shifts = np.zeros(whole.variance.size)
-    for columns in unselected_laws(problem, tangent.pieces, effects, sigma):
-
-        def beside(n: int, r: np.ndarray, j: np.ndarray, further: list[np.ndarray] = columns) -> Linear:
-            return r, np.concatenate([j, further[n]], axis=2)
-
-        moved = _Influence(problem, tangent, beside).blocks.sum(axis=0) - whole.blocks.sum(axis=0)
-        shifts = np.maximum(shifts, moved**2)
-    return _quantile(whole) ** 2 * shifts
-
-
-def _quantile(whole: _Influence) -> float:
-    return float(student.ppf(0.975, max(2, whole.blocks.shape[0] - 1)))
-
-
-def _as_it_is(n: int, residuals: np.ndarray, jacobian: np.ndarray) -> Linear:
+def as_it_is(n: int, residuals: np.ndarray, jacobian: np.ndarray) -> Linear:
+    """The view of a fit that changes nothing."""
     return residuals, jacobian
 
 
-def _by_effect(effects: Sequence[NamedEffect], widths: np.ndarray) -> list[dict[str, float]]:
+def by_effect(effects: Sequence[NamedEffect], widths: np.ndarray) -> list[dict[str, float]]:
+    """A number for each parameter of all effects in order, by effect and name; edges of intervals have none."""
     names = [list(e.parameters()) for e in effects]
     ends = np.cumsum([len(n) for n in names])[:-1]
     return [
@@ -111,11 +92,11 @@ def _by_effect(effects: Sequence[NamedEffect], widths: np.ndarray) -> list[dict[
     ]
 
 
-class _Influence:
+class Influence:
     """What each block of time adds to the parameters in one step of a fit.
 
     `blocks` has shape (n_blocks, n_parameters); `counts` are those of each segment; `variance`, shape
-    (n_parameters,), is that of unit noise.
+    (n_parameters,), is that of unit noise; `quantile` Student's for a 95 % interval from so many blocks.
     """
 
     def __init__(self, problem: Problem, tangent: Tangent, view: View) -> None:
@@ -130,6 +111,7 @@ class _Influence:
         bread = inverse(np.asarray(gram))[:own]
         self.blocks = -np.array(scores) @ bread.T @ tangent.slopes.T
         self.variance = np.einsum("pk,kl,pl->p", tangent.slopes, bread[:, :own], tangent.slopes)
+        self.quantile = float(student.ppf(0.975, max(2, len(scores) - 1)))
 
 
 def _views(
