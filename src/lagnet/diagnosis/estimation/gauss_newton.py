@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -66,6 +66,7 @@ class GaussNewton:
     pieces: tuple[Segment, ...]
     sigma: np.ndarray
     slots: Slots
+    known: dict[bytes, tuple[list[np.ndarray], list[np.ndarray]]] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def motions(self) -> tuple[Motion, ...]:
@@ -80,6 +81,15 @@ class GaussNewton:
             residual = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
             out.append(residual * piece.counts / self.sigma)
         return out
+
+    def linear(self, x: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """e and ∂e/∂x of all coordinates; kept for the last x, at which bodies and intervals ask for the same."""
+        key = x.tobytes()
+        if key not in self.known:
+            found = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
+            self.known.clear()
+            self.known[key] = found
+        return self.known[key]
 
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
@@ -141,7 +151,7 @@ class GaussNewton:
 
         Residuals that are correlated in time within a block widen the intervals.
         """
-        residual, jacobian = self.residuals(x), self.jacobian(x, np.ones(x.size, dtype=bool))
+        residual, jacobian = self.linear(x)
         gram, _ = normal(jacobian, residual)
         bread, open_ = inverse_where_told(gram)
         scores = []

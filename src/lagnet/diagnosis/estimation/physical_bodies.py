@@ -45,7 +45,8 @@ class _Tangent:
 
 
 def _tangent(work: GaussNewton, x: np.ndarray) -> _Tangent:
-    return _Tangent(work, x, *normal(work.jacobian(x, np.ones(x.size, dtype=bool)), work.residuals(x)))
+    residual, jacobian = work.linear(x)
+    return _Tangent(work, x, *normal(jacobian, residual))
 
 
 def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:

@@ -50,9 +50,9 @@ class Tangent:
 def tangent_at(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Tangent:
     """Residuals of fitted effects, and how they and the parameters change with the coordinates; see `refit`."""
     work, x = start_gauss_newton(problem, effects, sigma)
-    jacobians = work.jacobian(x, np.ones(x.size, dtype=bool))
+    residuals, jacobians = work.linear(x)
     blocks = [parameter_jacobian(e, x[work.slots.of(n)]) for n, e in enumerate(effects)]
-    return Tangent(work.pieces, work.residuals(x), jacobians, np.asarray(block_diag(*blocks)))
+    return Tangent(work.pieces, residuals, jacobians, np.asarray(block_diag(*blocks)))
 
 
 def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Refit:
