@@ -97,7 +97,7 @@ def study(name: str, case: Case) -> dict[str, Any]:
         "identified": lambda p: model.torque_along(p.time, p.q, p.v, p.a),
         "full": lambda p: full.torque_along(p.time, p.q, p.v, p.a),
     }
-    errors = {way: _errors(problem, torque, BANDS.get(name, 5.0)) for way, torque in ways.items()}
+    errors = {way: errors_of(problem, torque, BANDS.get(name, 5.0)) for way, torque in ways.items()}
     return {
         "bandwidth_hz": fit.bandwidth,
         "told_at_hz": BANDS.get(name, 5.0),
@@ -124,7 +124,7 @@ def _trees(problem: Problem, torque: Callable[[Segment], np.ndarray]) -> Callabl
     return lambda p: np.column_stack([tree.predict(_signals(problem, p)) for tree in grown])
 
 
-def _errors(problem: Problem, torque: Callable[[Segment], np.ndarray], band: float) -> tuple[np.ndarray, np.ndarray]:
+def errors_of(problem: Problem, torque: Callable[[Segment], np.ndarray], band: float) -> tuple[np.ndarray, np.ndarray]:
     """nMSE of each joint over all held-out samples, and over those at which some joint moves."""
     top = np.quantile(np.abs(np.concatenate([p.v for p in problem.fit])), 0.98, axis=0)
     error = np.concatenate([low_pass(p.tau - torque(p), problem.rate, band) for p in problem.holdout])

@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from lagnet.effects.rest import blurred_sign, held_direction
+from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
 
 
@@ -80,6 +81,20 @@ class Motion:
             return [np.ascontiguousarray(columns[..., 10 * k : 10 * k + 10]) for k in range(self.n_dof)]
 
         return self.remembered("links", links)[joint]
+
+    def body_torque(self, joint: int, parameters: np.ndarray) -> np.ndarray:
+        """Torque of a body behind one joint, shape (n, dof) [N m]: its regressor times its ten inertial parameters.
+
+        Where the regressor is not known yet, Newton–Euler of an arm that has this body alone: a tenth of the time. A
+        change that is no real body has its regressor alone.
+        """
+        without_rotors = None if "links" in self.cache else getattr(self.model, "with_armature", None)
+        if without_rotors is None or not is_physically_consistent(parameters):
+            return np.asarray(self.link_regressor(joint) @ parameters)
+        bodies = np.zeros((self.n_dof, 10))
+        bodies[joint] = parameters
+        alone = without_rotors(np.zeros(self.n_dof)).with_inertial_parameters(bodies)
+        return alone.inverse_dynamics(self.q, self.v, self.a)
 
     def remembered(self, key: Hashable, make: Any) -> Any:
         """The value of `make()`, kept for the other effects that ask for the same key."""

@@ -7,7 +7,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
-from lagnet.diagnosis.problem.thinning import FULL_RATE, thinned
+from lagnet.diagnosis.problem.thinning import FULL_RATE, LONG_RATE, thinned
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 
@@ -38,6 +38,16 @@ def test_the_rate_follows_the_band(arm, oversampled, monkeypatch) -> None:
     posed = _posed(arm, oversampled, monkeypatch, FULL_RATE)
     assert posed.rate == pytest.approx(FULL_RATE * BANDWIDTH)
     assert np.diff(posed.fit[0].time) == pytest.approx(1.0 / posed.rate)
+
+
+def test_long_recordings_have_half_the_rate_and_held_out_ones_follow(arm, oversampled, monkeypatch) -> None:
+    first = oversampled[0]
+    held = [first.rows(slice(0, len(first) // 2))]  # short of what is long
+    monkeypatch.setattr("lagnet.diagnosis.problem.thinning.LONG", 0.9 * len(first) * FULL_RATE * BANDWIDTH / first.rate)
+    fit = condition([first], BANDWIDTH)
+    posed = pose_problem(arm, fit, condition(held, BANDWIDTH))
+    assert posed.rate == pytest.approx(LONG_RATE * BANDWIDTH)
+    assert np.diff(posed.holdout[0].time) == pytest.approx(1.0 / posed.rate)
 
 
 def test_residuals_are_those_of_all_samples(arm, oversampled, monkeypatch) -> None:

@@ -164,7 +164,7 @@ def pose_problem(
     Raises:
         DiagnosisError: no stretch is long enough.
     """
-    fit, holdout = thinned(fit), thinned(holdout)
+    fit, holdout = thinned(fit), thinned(holdout, fit)
     slow = blurred_speed(fit)
     empty = Problem(
         nominal, (), (), fit.rate, fit.bandwidth, slow, tuple(nominal.joints), limits=limits or DecisionLimits()

@@ -8,11 +8,23 @@ from lagnet.recordings.conditioning.condition import Conditioned, Stretch
 from lagnet.recordings.conditioning.smoothing import low_pass
 
 FULL_RATE = 40.0  # samples per second over the bandwidth, beyond which laws gain nothing from more of them
+LONG_RATE = 20.0  # of long recordings: twice what sets the low-pass apart from what it removes
+LONG = 150_000  # samples at the full rate, from which recordings are long
 
 
-def thinned(conditioned: Conditioned) -> Conditioned:
-    """Samples at forty times the bandwidth where there are more; torques are low-passed before, against aliasing."""
+def thinned(conditioned: Conditioned, fitted: Conditioned | None = None) -> Conditioned:
+    """Samples at forty times the bandwidth where there are more; torques are low-passed before, against aliasing.
+
+    Long recordings have half as many. Their length is that of the fitted ones, whose rate the held-out ones share.
+
+    Args:
+        conditioned: recordings on their even clock.
+        fitted: those that are fitted, where these are not.
+    """
+    samples = sum(s.time.size for s in (fitted or conditioned).stretches)
     every = int(conditioned.rate / (FULL_RATE * conditioned.bandwidth))
+    if samples > LONG * max(every, 1):
+        every = int(conditioned.rate / (LONG_RATE * conditioned.bandwidth))
     if every < 2:
         return conditioned
     rate = conditioned.rate / every

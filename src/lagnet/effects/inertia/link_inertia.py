@@ -43,6 +43,9 @@ class LinkInertia(LinearEffect):
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:
         return motion.link_regressor(joint)
 
+    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        return motion.body_torque(joint, np.array([values[p.name] for p in self.parameters]))
+
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         return bool(np.all(np.isfinite(coefficients)))
 

@@ -70,7 +70,7 @@ class Payload(Effect):
         return parameters_of_body(values["m"], _centre(values), _inertia(values))
 
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:
-        return self.columns(motion, joint, {}) @ self.body_parameters(values)
+        return motion.body_torque(motion.n_dof - 1, self.body_parameters(values))
 
     def feasible(self, values: Mapping[str, float]) -> bool:
         return values["m"] > 0 and bool(is_physically_consistent(self.body_parameters(values)))

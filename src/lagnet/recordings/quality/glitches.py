@@ -23,6 +23,7 @@ ORDINARY = 0.5  # of the limit that its neighbours may be off at most
 TOO_MANY = 0.05  # of the samples flagged: the signal is not smooth, and nothing can be told
 BETWEEN = 0.5  # of the run's deviation that it must leave its neighbours' range by: the edge of a step stays in it
 EDGE = 4  # samples at the ends of a stretch that have too few neighbours
+ENOUGH = 100_000  # runs of each length, spread over a channel, from which its threshold is taken
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,8 @@ class _Limits:
     def of(self, length: int) -> float:
         """The threshold for a run of so many samples."""
         if length not in self._known:
-            first = np.arange(EDGE, len(self._x) - EDGE - length)
+            last = len(self._x) - EDGE - length
+            first = np.arange(EDGE, last, max(1, (last - EDGE) // ENOUGH))
             nodes = first[:, None] + np.array([-2, -1, length, length + 1])
             middle = first + (length - 1) // 2
             curve = np.einsum("ki,ki->k", cubic_weights(self._time, nodes, middle), self._x[nodes])

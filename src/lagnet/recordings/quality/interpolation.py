@@ -15,13 +15,13 @@ def cubic_weights(time: np.ndarray, nodes: np.ndarray, at: np.ndarray) -> np.nda
         nodes: shape (k, 4), rows of the samples.
         at: shape (k,), rows at whose time the value is wanted.
     """
-    t, x = time[nodes], time[at][:, None]
-    weights = np.ones(nodes.shape)
+    x, t = time[at], [time[nodes[:, i]] for i in range(4)]
+    weights = np.ones((4, len(x)))  # a row for each node: long columns side by side would be read in leaps
     for i in range(4):
         for j in range(4):
             if i != j:
-                weights[:, i] *= (x[:, 0] - t[:, j]) / (t[:, i] - t[:, j])
-    return weights
+                weights[i] *= (x - t[j]) / (t[i] - t[j])
+    return weights.T
 
 
 def off_neighbours(time: np.ndarray, x: np.ndarray, at: np.ndarray, left_out: int = 0) -> np.ndarray:

@@ -83,9 +83,9 @@ def _least(subject: Subject, kind: str, joint: int, values: np.ndarray) -> Calla
     parts = [values[rows] for rows in subject.stretches]
     if not parts:
         return lambda length: np.inf
-    low, high = np.quantile(np.concatenate(parts), [0.01, 0.99], axis=0)
-    ranges = high - low
-    range_ = float(ranges[joint] if subject.moves[joint] else ranges.max())
+    of = np.concatenate(parts)[:, [joint] if subject.moves[joint] else slice(None)]
+    low, high = np.quantile(of, [0.01, 0.99], axis=0)
+    range_ = float((high - low).max())
     own = [part[:, joint] for part in parts]
     bend = OF_BEND * float(np.quantile(np.concatenate([np.abs(np.diff(x, n=2)) for x in own]), COMMON))
     plain = max(LEAST_OF_RANGE[kind] * range_, QUANTA * max(resolution(x) for x in own), 1e-12)

@@ -55,6 +55,7 @@ def _moving(q: np.ndarray) -> np.ndarray:
     """Whether some joint was on its way at each sample, shape (n,): its steps around are as large as usual."""
     steps = np.abs(np.diff(q, axis=0, prepend=q[:1]))
     usual = np.median(steps, axis=0)
-    padded = np.pad(steps, ((AROUND, AROUND), (0, 0)), mode="edge")
-    around = np.median(np.stack([padded[k : k + len(q)] for k in range(2 * AROUND + 1)]), axis=0)
-    return np.any((around > MOVING * usual) & (usual > 0), axis=1)
+    quick = np.pad(steps > MOVING * usual, ((AROUND + 1, AROUND), (0, 0)), mode="edge").cumsum(axis=0)
+    window = 2 * AROUND + 1
+    most = quick[window:] - quick[:-window] > AROUND  # a median exceeds what more than half of the values exceed
+    return np.any(most & (usual > 0), axis=1)
