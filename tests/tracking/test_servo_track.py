@@ -21,7 +21,7 @@ from lagnet.tracking.engine import EngineSettings
 from lagnet.tracking.growth import grown
 from lagnet.tracking.manifest import Make, TrackedRecording, TrackSettings
 from lagnet.tracking.servos.fit import fit_servos, owner_of
-from lagnet.tracking.servos.judgement import WIDER
+from lagnet.tracking.servos.judgement import WIDER, why_not_determined, why_not_shown
 from lagnet.tracking.servos.new_physics import again_and_again, candidates_of, with_candidates, with_new_payload
 from lagnet.tracking.servos.tracked import common_followed, followed_from_plain
 from lagnet.tracking.servos.work import calibrated_servos, on_motion
@@ -164,13 +164,23 @@ def test_an_effect_of_which_the_recordings_show_nothing_does_not_join(bench):
     assert all(not result["rows"] for result in told)
 
 
-def test_what_the_recordings_determine_joins_and_is_fitted_with_the_set(bench):
-    slow = pendulum.write_model(bench.folder / "slow.xml", friction=DRY, damping=0.4)
-    told, left, titles = on_trial(bench, bench.set, "viscous_friction", {"Fv": 0.4}, slow)
-    assert not left
-    assert titles[-1] == "fits with new physics"
-    assert {row["effect"] for result in told for row in result["rows"]} == {"coulomb_friction", "viscous_friction"}
-    assert all(d["wider"] <= WIDER for result in told for d in result["determined"])
+def fit_of(value: float, half: float, wider: float | None) -> dict:
+    told = {"joint": 0, "effect": "command_delay", "values": {"delay": value}, "halves": {"delay": half}}
+    return {"rows": [], "determined": [told | {"wider": wider}]}
+
+
+def test_an_effect_joins_where_four_of_five_recordings_determine_it(bench):
+    rows = [[{"effect": "command_delay", "joint": 0, "values": {"T": 0.02}}]] * 2
+    one = candidates_of(bench.set, rows)[0]
+    shown, absent = fit_of(0.021, 0.004, WIDER), fit_of(0.0, 0.004, 1.0)
+    wide, trading, blind = fit_of(0.0, 0.03, 1.0), fit_of(0.02, 0.004, 1.01 * WIDER), fit_of(0.02, 0.0, None)
+    still = {"rows": [], "determined": []}  # the joint does not move
+    assert why_not_shown(one, [shown, shown]) is None
+    assert "in 1 of the 2" in str(why_not_shown(one, [shown, absent]))
+    assert why_not_determined(one, [shown, *[absent] * 3, wide]) is None
+    assert why_not_determined(one, [shown, absent, {"error": "not read"}]) is None
+    assert "2 of 5 recordings do not tell it" in str(why_not_determined(one, [*[shown] * 3, trading, blind]))
+    assert "2 of 5 recordings would not show it" in str(why_not_determined(one, [*[absent] * 3, wide, still]))
 
 
 def test_names_that_are_told_once_or_mean_what_is_followed_stay_outside(bench):
