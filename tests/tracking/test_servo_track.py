@@ -128,7 +128,7 @@ def test_a_fault_that_the_calibration_did_not_show_is_followed_from_its_first_re
 
 
 def on_trial(bench: SimpleNamespace, known, effect: str, values: dict[str, float], model: Path, weeks: int = 3):
-    """What becomes of an effect that the searches of some recordings named beyond a set; with the titles of the fits."""
+    """What becomes of an effect that searches named beyond a set, and the titles of the fits."""
     folder = bench.folder / f"trial of {effect}"
     make, tasks, titles = Make("servo", str(bench.folder / "pendulum.xml")), [], []
     for week in range(weeks):
