@@ -30,6 +30,7 @@ from lagnet.tracking.work import Work
 Told = dict[str, Any]
 Fit = Callable[[str, Sequence[Work]], list[Told]]  # a title and work of `fit_one` → what each told, in order
 TRIALS, FITS = "trials of new effects", "fits with new physics"
+ONCE, RARER = "a single search named it", "searches name another effect of the joint far more often"
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ def _robot(tasks: list[Work], told: list[Told]) -> _Robot:
     robot = _Robot(tasks, told, with_new_payload(known, found), list(named))
     often = again_and_again(named, len(found))
     for one in named:
-        robot.refuse(one, None if one in often else "named too seldom")
+        robot.refuse(one, None if one in often else ONCE if len(one.named) == 1 else RARER)
     return robot
 
 

@@ -33,3 +33,10 @@ def test_what_no_motion_tells_apart_widens_without_bound():
 def test_the_only_parameter_widens_nothing():
     errors, slopes = correlated(0.5)
     assert widening([errors], [slopes], FLOOR, [0, 1]) == 1.0
+
+
+def test_a_parameter_that_motion_does_not_show_has_no_interval_to_widen():
+    errors, slopes = correlated(0.6)
+    blind = np.column_stack([slopes, 1e-9 * np.random.default_rng(4).standard_normal(SAMPLES)])
+    alone = widening([errors], [slopes], FLOOR, [1])
+    assert widening([errors], [blind], FLOOR, [1]) == pytest.approx(alone, rel=1e-2)  # the count of parameters enters

@@ -65,4 +65,5 @@ def widening(
     alone, blind = half_widths(errors, [j[:, others] for j in jacobians], floors, np.eye(others.size))
     if unseen.shape[1] > blind.shape[1]:
         return np.inf
-    return float(np.max(with_all[alone > 0.0] / alone[alone > 0.0], initial=1.0))
+    known = (alone > 0.0) & (np.sum(blind**2, axis=1) < 0.5)  # others have no interval that could be wider
+    return float(np.max(with_all[known] / alone[known], initial=1.0))
