@@ -122,12 +122,15 @@ def _robot(tasks: list[Work], told: list[Told]) -> _Robot:
 
 
 def _alone(robots: Sequence[_Robot], out: Path, fit: Fit) -> None:
-    """Each effect alone with the set: to the recordings that name it, then to all."""
-    for named_alone, why_not in ((True, why_not_shown), (False, why_not_determined)):
-        asked = [(robot, one) for robot in robots for one in robot.open]
-        jobs = [([r.tasks[i] for i in one.named] if named_alone else r.tasks, r.set_with([one])) for r, one in asked]
-        for (robot, one), fits in zip(asked, _fitted(TRIALS, jobs, out, fit), strict=True):
-            robot.refuse(one, why_not(one, fits))
+    """Each effect alone with the set: to the recordings that name it, which should show it best, then to all."""
+    asked = [(robot, one) for robot in robots for one in robot.open]
+    jobs = [([robot.tasks[i] for i in one.named], robot.set_with([one])) for robot, one in asked]
+    for (robot, one), fits in zip(asked, _fitted(TRIALS, jobs, out, fit), strict=True):
+        robot.refuse(one, why_not_shown(one, fits) or why_not_determined(one, fits, "recordings that name it"))
+    asked = [(robot, one) for robot in robots for one in robot.open]
+    jobs = [(robot.tasks, robot.set_with([one])) for robot, one in asked]
+    for (robot, one), fits in zip(asked, _fitted(TRIALS, jobs, out, fit), strict=True):
+        robot.refuse(one, why_not_determined(one, fits))
 
 
 def _together(robots: Sequence[_Robot], out: Path, fit: Fit) -> None:

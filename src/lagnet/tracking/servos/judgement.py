@@ -39,12 +39,13 @@ def why_not_shown(one: Candidate, fits: Fits) -> str | None:
     return f"fitted with what is followed, its interval excludes its absence in {shown} of the {len(fits)} that name it"
 
 
-def why_not_determined(one: Candidate, fits: Fits) -> str | None:
+def why_not_determined(one: Candidate, fits: Fits, where: str = "recordings") -> str | None:
     """None if enough recordings determine an effect beside the set, else why they do not.
 
     Args:
         one: the effect.
-        fits: of a set that holds it, to all recordings.
+        fits: of a set that holds it.
+        where: what was fitted, in words.
     """
     fine = [fit for fit in fits if "rows" in fit]
     found = [_told_of(one, fit) for fit in fine]
@@ -57,9 +58,9 @@ def why_not_determined(one: Candidate, fits: Fits) -> str | None:
         return None
     reasons = []
     if sum(apart) < ENOUGH * len(fine):
-        reasons.append(f"{len(fine) - sum(apart)} of {len(fine)} recordings do not tell it from what is followed")
+        reasons.append(f"{len(fine) - sum(apart)} of {len(fine)} {where} do not tell it from what is followed")
     if sum(narrow) < ENOUGH * len(fine) or not reasons:
-        reasons.append(f"{len(fine) - sum(narrow)} of {len(fine)} recordings would not show it by its size")
+        reasons.append(f"{len(fine) - sum(narrow)} of {len(fine)} {where} would not show it by its size")
     return "; ".join(reasons)
 
 
