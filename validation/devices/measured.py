@@ -35,7 +35,7 @@ class Sizes:
 
     train: int = 40_000
     held_out: int = 8_000
-    steps: tuple[tuple[int, int], ...] = ((512, 3000), (4096, 1000))
+    steps: tuple[tuple[int, int], ...] = ((512, 1000), (4096, 300))
     batched: int = 65_536
     arms: int = 4096
     roll: int = 50

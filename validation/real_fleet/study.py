@@ -27,7 +27,8 @@ BENCH_GAIN = 100.0  # kp of the bench that the others are stated over
 
 def bench(folder: Path, logs: Sequence[Path]) -> Path:
     """Manifest of the XL330: dates of the file names, gains of the files, temperatures that the servo reported."""
-    (folder / "pendulum.urdf").write_text(PENDULUM, encoding="utf-8")
+    if not (folder / "pendulum.urdf").exists():  # a file written anew has its work done again
+        (folder / "pendulum.urdf").write_text(PENDULUM, encoding="utf-8")
     listed = ", ".join(json.dumps(str(log)) for log in logs)
     lines = [*SETTINGS, "[[make]]", 'name = "xl330"', 'robot = "pendulum.urdf"', f"calibration = [{listed}]"]
     lines += ["[[robot]]", 'name = "servo"']
