@@ -16,14 +16,18 @@ from tests.tracking.fleets import START
 from lagnet.errors import EffectError, LagnetError
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.writing import write_recording
+from lagnet.servos.parameters import INDEX
 from lagnet.tracking.engine import EngineSettings
-from lagnet.tracking.manifest import Make
+from lagnet.tracking.growth import grown
+from lagnet.tracking.manifest import Make, TrackedRecording, TrackSettings
 from lagnet.tracking.servos.fit import fit_servos, owner_of
-from lagnet.tracking.servos.new_physics import with_new_payload
+from lagnet.tracking.servos.judgement import WIDER, why_not_determined, why_not_shown
+from lagnet.tracking.servos.new_physics import again_and_again, candidates_of, with_candidates, with_new_payload
 from lagnet.tracking.servos.tracked import common_followed, followed_from_plain
 from lagnet.tracking.servos.work import calibrated_servos, on_motion
 from lagnet.tracking.statistics.followed_law import lower_bound, stage_of
 from lagnet.tracking.track import track
+from lagnet.tracking.work import Work, fit_one
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
@@ -105,6 +109,94 @@ def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, s
     assert found.analysis.events[0].date == START + timedelta(days=28)
 
 
+def test_a_fault_that_the_calibration_did_not_show_is_followed_from_its_first_recording_on(bench, scheduler):
+    folder = bench.folder / "delayed"
+    write_recording(bench.first, folder / "calibration.csv")
+    for week in range(8):
+        late = {"delay": 40} if week >= 3 else {}
+        write_recording(
+            pendulum.record(bench.healthy, 20.0, seed=40 + week, **late),
+            folder / f"{START + timedelta(days=7 * week):%Y-%m-%d}.csv",
+        )
+    (folder / "fleet.toml").write_text(MANIFEST)
+    found = track(folder / "fleet.toml", folder / "out", EngineSettings(scheduler=scheduler))
+    assert [(e.effect, e.joint, e.date) for e in found.analysis.events] == [
+        ("command_delay", "servo", START + timedelta(days=21))
+    ]
+    delays = [row.value for row in found.rows if row.effect == "command_delay"]
+    assert delays == pytest.approx([0.0] * 3 + [0.04] * 5, abs=0.003)
+
+
+def on_trial(bench: SimpleNamespace, known, effect: str, values: dict[str, float], model: Path, weeks: int = 3):
+    """What becomes of an effect that searches named beyond a set, and the titles of the fits."""
+    folder = bench.folder / f"trial of {effect}"
+    make, tasks, titles = Make("servo", str(bench.folder / "pendulum.xml")), [], []
+    for week in range(weeks):
+        file, date = folder / f"{week}.csv", START + timedelta(days=7 * week)
+        write_recording(pendulum.record(model, 20.0, seed=60 + week), file)
+        recording = TrackedRecording("one", "servo", str(file), date)
+        tasks.append(Work(recording, make, known, TrackSettings(reports=False), folder / "diagnoses" / f"{week}"))
+    new = [{"effect": effect, "joint": 0, "values": values, "body": ()}]
+    told = [{"rows": [], "joints": ["servo"], "new": new} for _ in tasks]
+
+    def fit(title, work):
+        titles.append(title)
+        return [fit_one(task) for task in work]
+
+    return (*grown(tasks, told, folder, fit), titles)
+
+
+def test_an_effect_that_no_recording_tells_from_what_is_followed_does_not_join(bench):
+    damped = pendulum.write_model(bench.folder / "damped.xml", friction=DRY, damping=0.4)
+    servo = bench.set.servos[0]
+    known = replace(bench.set, servos=(replace(servo, free=(*servo.free, ("viscous",))),))
+    told, left, titles = on_trial(bench, known, "gain_error", {"kp": servo.law[INDEX["kp"]], "kd": 0.6}, damped)
+    assert [(n.joint, n.effect, n.named, n.recordings) for n in left] == [("servo", "gain_error", 3, 3)]
+    assert "do not tell it from what is followed" in left[0].reason or "its absence in 0 of the 3" in left[0].reason
+    assert titles[-1] != "fits with new physics"
+    assert all(not result["rows"] for result in told)  # as they were
+
+
+def test_an_effect_of_which_the_recordings_show_nothing_does_not_join(bench):
+    told, left, _ = on_trial(bench, bench.set, "command_delay", {"T": 0.02}, bench.healthy)
+    assert [n.effect for n in left] == ["command_delay"]
+    assert "excludes its absence in 0 of the 3" in left[0].reason
+    assert all(not result["rows"] for result in told)
+
+
+def fit_of(value: float, half: float, wider: float | None) -> dict:
+    told = {"joint": 0, "effect": "command_delay", "values": {"delay": value}, "halves": {"delay": half}}
+    return {"rows": [], "determined": [told | {"wider": wider}]}
+
+
+def test_an_effect_joins_where_four_of_five_recordings_determine_it(bench):
+    rows = [[{"effect": "command_delay", "joint": 0, "values": {"T": 0.02}}]] * 2
+    one = candidates_of(bench.set, rows)[0]
+    shown, absent = fit_of(0.021, 0.004, WIDER), fit_of(0.0, 0.004, 1.0)
+    wide, trading, blind = fit_of(0.0, 0.03, 1.0), fit_of(0.02, 0.004, 1.01 * WIDER), fit_of(0.02, 0.0, None)
+    still = {"rows": [], "determined": []}  # the joint does not move
+    assert why_not_shown(one, [shown, shown]) is None
+    assert "in 1 of the 2" in str(why_not_shown(one, [shown, absent]))
+    assert why_not_determined(one, [shown, *[absent] * 3, wide]) is None
+    assert why_not_determined(one, [shown, absent, {"error": "not read"}]) is None
+    assert "2 of 5 recordings do not tell it" in str(why_not_determined(one, [*[shown] * 3, trading, blind]))
+    assert "2 of 5 recordings would not show it" in str(why_not_determined(one, [*[absent] * 3, wide, still]))
+
+
+def test_names_that_are_told_once_or_mean_what_is_followed_stay_outside(bench):
+    delay = {"effect": "command_delay", "joint": 0, "values": {"T": 0.02}}
+    rub = {"effect": "static_friction", "joint": 0, "values": {"Fs": 0.02}}
+    assert again_and_again(candidates_of(bench.set, [[delay], [], []]), 3) == []
+    twice = candidates_of(bench.set, [[delay], [], [delay | {"values": {"T": 0.03}}]])
+    assert [(c.named, c.values) for c in again_and_again(twice, 3)] == [((0, 2), {"T": 0.025})]
+    larger = with_candidates(bench.set, [*twice, *candidates_of(bench.set, [[rub]])])
+    assert larger.servos[0].effects == ("coulomb_friction", "command_delay")
+    assert ("delay",) in larger.servos[0].free
+    assert [(a.effect, a.groups) for a in larger.added] == [("command_delay", (("delay",),)), ("static_friction", ())]
+    assert larger.laws[0, INDEX["delay"]] == 0.025
+    assert followed_from_plain(json.loads(json.dumps(larger.plain()))) == larger
+
+
 def test_a_payload_is_followed_by_its_share(bench):
     body = 0.5 * bench.robot.inertial_parameters()[-1]
     loaded = replace(bench.set, body=tuple(map(float, body)))
@@ -119,7 +211,7 @@ def test_a_payload_is_followed_by_its_share(bench):
 
 
 def test_a_payload_that_is_found_again_and_again_is_followed(bench):
-    found = [{"body": [m, *[0.0] * 9]} for m in (0.1, 0.3, 0.2)]
+    found = [{"effect": "payload", "body": [m, *[0.0] * 9]} for m in (0.1, 0.3, 0.2)]
     larger = with_new_payload(bench.set, [[e] for e in found])
     assert larger.body[0] == 0.2
     assert with_new_payload(bench.set, [[found[0]], [], []]) is bench.set

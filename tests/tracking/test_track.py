@@ -77,7 +77,7 @@ def test_report_of_a_track(fleet, tmp_path):
 
 def test_many_rows_are_parted_by_robot(fleet, monkeypatch, tmp_path):
     monkeypatch.setattr(tables, "PARTITIONED", 10)
-    tables.write_tables(fleet[3].rows, fleet[3].analysis, tmp_path)
+    tables.write_tables(fleet[3].rows, fleet[3].analysis, (), tmp_path)
     assert sorted(p.name for p in (tmp_path / "track.parquet").iterdir()) == ["robot=arm_0", "robot=arm_1"]
     whole = pq.read_table(fleet[1] / "track.parquet")
     assert read_track(tmp_path).select(whole.column_names).sort_by("value") == whole.sort_by("value")

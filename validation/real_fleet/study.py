@@ -1,6 +1,6 @@
 """Two real robots followed over their recordings by commands and positions alone: what drifts, and what does not.
 
-python -m validation.real_fleet.study [--quick]
+python -m validation.real_fleet.study [--quick] [--work FOLDER]
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ BENCH_GAIN = 100.0  # kp of the bench that the others are stated over
 
 def bench(folder: Path, logs: Sequence[Path]) -> Path:
     """Manifest of the XL330: dates of the file names, gains of the files, temperatures that the servo reported."""
-    (folder / "pendulum.urdf").write_text(PENDULUM, encoding="utf-8")
+    if not (folder / "pendulum.urdf").exists():  # a file written anew has its work done again
+        (folder / "pendulum.urdf").write_text(PENDULUM, encoding="utf-8")
     listed = ", ".join(json.dumps(str(log)) for log in logs)
     lines = [*SETTINGS, "[[make]]", 'name = "xl330"', 'robot = "pendulum.urdf"', f"calibration = [{listed}]"]
     lines += ["[[robot]]", 'name = "servo"']
@@ -58,8 +59,13 @@ def _written(folder: Path, lines: Sequence[str]) -> Path:
 def followed(manifest: Path) -> dict[str, Any]:
     """Changes told, and each parameter over the recordings with its 95 % intervals."""
     begun = time.perf_counter()
-    found = track(manifest, manifest.parent / "out")
+    found = track(manifest, manifest.parent / "out", progress=_show)
     return {"seconds": round(time.perf_counter() - begun, 1), **summary(found)}
+
+
+def _show(title: str, done: int, total: int) -> None:
+    if done % 10 == 0 or done == total:
+        print(f"{title}: {done} of {total}", flush=True)
 
 
 def summary(found: Track) -> dict[str, Any]:
@@ -77,6 +83,9 @@ def summary(found: Track) -> dict[str, Any]:
             name: [[_short(x) for x in (r.value, r.lower, r.upper)] for r in rows] for name, rows in series.items()
         },
         "outliers": {name: n for name, rows in series.items() if (n := sum(bool(r.outlier) for r in rows))},
+        "not_followed": [
+            {n: getattr(one, n) for n in ("joint", "effect", "named", "reason")} for one in found.not_followed
+        ],
         "changes": [
             {"joint": e.joint, "effect": e.effect, "parameter": e.parameter, "kind": e.kind, "change": _short(e.change)}
             for e in found.analysis.events
@@ -92,13 +101,17 @@ def main() -> None:
     """Follows both robots, or three logs of the bench with --quick, and writes result.json."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="three logs of the bench; nothing is written")
-    quick, result = parser.parse_args().quick, {}
+    parser.add_argument("--work", type=Path, help="folder that keeps what is finished")
+    options, result = parser.parse_args(), {}
+    quick = options.quick
     logs = sorted((DATA / "bam_xl330").glob("*.json"))
     motions = sorted(p for p in (DATA / "so101").iterdir() if p.is_dir())
     sets = {"XL330": (bench, logs[:3] if quick else logs), "SO-101": (arm, motions)}
     for name, (write, files) in sets.items():
-        with tempfile.TemporaryDirectory() as folder:
-            result[name] = followed(write(Path(folder), files))
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(options.work or scratch) / name
+            folder.mkdir(parents=True, exist_ok=True)
+            result[name] = followed(write(folder, files))
         print(name, json.dumps(result[name], ensure_ascii=False), flush=True)
         if quick:
             return

@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from lagnet.errors import ModelError
+from lagnet.models.devices import chosen_devices
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.kinds import ModelSpec
 from lagnet.models.lagrangians.conservative import Conservative, FreeLagrangian
@@ -25,6 +26,7 @@ from lagnet.models.serial_chain.dynamics import SerialChainDynamics
 from lagnet.types import MassMatrix, Samples, Trajectory
 
 CHUNK = 512  # samples computed at a time: the working set stays in cache, memory stays bounded
+LARGE = 16 * CHUNK, 256 * CHUNK  # elsewhere than on a processor: thousands of threads want as many samples
 BUCKETS = (1, 8, 32, CHUNK)  # batches are padded to one of these, so that few shapes are ever compiled
 THREADS = min(os.cpu_count() or 1, 16)  # chunks computed side by side
 PRECISIONS = {"double": np.float64, "single": np.float32}
@@ -151,14 +153,16 @@ class LearnedModel:
 
     def _batched(self, name: str, **arrays: Any) -> np.ndarray:
         given = self._checked(arrays)
-        n = len(given[0])
+        n, device = len(given[0]), chosen_devices()[0]
         key = (name, n == 1)
         function = self._functions.get(key) or self._functions.setdefault(key, self._function(*key))
         if n in BUCKETS:
             return function(*given)
-        starts = range(0, n, CHUNK)
-        parts = [[x[i : i + CHUNK] for x in given] for i in starts]
-        return np.concatenate([*(map if n <= CHUNK else _workers().map)(partial(_padded, function), parts)])
+        buckets = BUCKETS if device.platform == "cpu" else (*BUCKETS, *LARGE)
+        chunk = buckets[-1]
+        parts = [[x[i : i + chunk] for x in given] for i in range(0, n, chunk)]
+        padded = partial(_padded, function, buckets, device)
+        return np.concatenate([*(map if n <= chunk else _workers().map)(padded, parts)])
 
     def _width(self) -> Any:
         """Whether JAX computes in float64; a setting of the thread."""
@@ -192,19 +196,23 @@ def _compiled(owner: Any, name: str, alone: bool) -> Callable[..., Any]:
     leaves, tree = jax.tree.flatten(weights)
 
     def call(leaves: list[Any], *given: Any) -> Any:
-        return jax.vmap(getattr(eqx.combine(tree.unflatten(leaves), rest), name))(*given)
+        with jax.default_matmul_precision("float32"):  # a GPU would round products of single precision to ten bits
+            return jax.vmap(getattr(eqx.combine(tree.unflatten(leaves), rest), name))(*given)
 
     if alone and all(np.any(x) for x in leaves if x.ndim > 1):
         return jax.jit(partial(call, leaves))
     return partial(jax.jit(call), leaves)
 
 
-def _padded(function: Callable[..., np.ndarray], arrays: list[np.ndarray]) -> np.ndarray:
+def _padded(
+    function: Callable[..., np.ndarray], buckets: tuple[int, ...], device: Any, arrays: list[np.ndarray]
+) -> np.ndarray:
     n = len(arrays[0])
-    size = next(bucket for bucket in BUCKETS if bucket >= n)
+    size = next(bucket for bucket in buckets if bucket >= n)
     if size > n:
         arrays = [np.pad(x, ((0, size - n), (0, 0)), mode="edge") for x in arrays]
-    return function(*arrays)[:n]
+    with jax.default_device(device):  # a setting of the thread, which workers do not inherit
+        return function(*arrays)[:n]
 
 
 def _settled(owner: Any, width: Any) -> Any:

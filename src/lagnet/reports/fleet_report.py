@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lagnet.reports.contents.fleet import Fleet
 from lagnet.reports.page import write_page
-from lagnet.reports.sections import fleet_changes, fleet_headline, fleet_robots, fleet_timeline
+from lagnet.reports.sections import fleet_changes, fleet_headline, fleet_not_followed, fleet_robots, fleet_timeline
 from lagnet.reports.sections.fleet_data import page_data
 from lagnet.reports.wording import counted
 
@@ -18,7 +18,8 @@ def write_fleet_report(fleet: Fleet, path: str | Path) -> Path:
         fleet: robots and changes.
         path: the file to write; replaced in one step.
     """
-    parts = [section.build(fleet) for section in (fleet_headline, fleet_robots, fleet_timeline, fleet_changes)]
+    sections = (fleet_headline, fleet_robots, fleet_timeline, fleet_changes, fleet_not_followed)
+    parts = [part for section in sections if (part := section.build(fleet)) is not None]
     n_recordings = sum(len(r.dates) for r in fleet.robots)
     subtitle = f"{counted(len(fleet.robots), 'robot')}, {counted(n_recordings, 'recording')}"
     if fleet.newest is not None:

@@ -6,7 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from lagnet.reports.contents.fleet import Fleet, FleetEvent, FleetRobot, FleetSeries
+from lagnet.reports.contents.fleet import Fleet, FleetEvent, FleetNotFollowed, FleetRobot, FleetSeries
 from lagnet.tracking.statistics.analyse import Standing
 from lagnet.tracking.tables import TrackRow
 from lagnet.tracking.track import Track
@@ -22,9 +22,10 @@ def fleet_of(track: Track) -> Fleet:
         rows[row.robot].append(row)
     standings = {(s.robot, s.joint, s.effect, s.parameter): s for s in track.analysis.standings}
     events = [FleetEvent(**{n: getattr(e, n) for n in FleetEvent.__dataclass_fields__}) for e in track.analysis.events]
-    return Fleet(
-        [_robot(name, track.joints.get(name, ()), rows[name], page, standings) for name in sorted(rows)], events
-    )
+    robots = [_robot(name, track.joints.get(name, ()), rows[name], page, standings) for name in sorted(rows)]
+    names = FleetNotFollowed.__dataclass_fields__
+    left_out = [FleetNotFollowed(**{n: getattr(one, n) for n in names}) for one in track.not_followed]
+    return Fleet(robots, events, left_out)
 
 
 def _robot(

@@ -48,7 +48,7 @@ class TrackSettings:
         seed: of everything random.
         reports: whether every diagnosis gets its own page, of about 5 MB each.
         search: "every" recording is searched for physics beyond the set, or only "unusual" ones, which the fitted set
-            explains clearly worse than it did those of the calibration: some twenty times quicker.
+            explains clearly worse than it did those of the calibration: several times quicker.
         false_discovery_rate: expected share of wrong ones among the changes that are told.
         temperature_sigma: standard deviation between the temperature told and that of a joint's friction [K].
     """

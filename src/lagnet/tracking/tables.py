@@ -18,10 +18,12 @@ import pyarrow as pa
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 
+from lagnet.tracking.growth import NotFollowed
 from lagnet.tracking.statistics.analyse import Analysis, Event, Standing
 
 PARTITIONED = 1_000_000  # rows from which track.parquet is a folder with a part for each robot
 TRACK, CHANGES, FAMILY = "track.parquet", "changes.parquet", "family.parquet"
+NOT_FOLLOWED = "not_followed.parquet"
 MOMENT = pa.timestamp("us")
 
 
@@ -62,8 +64,8 @@ class TrackRow:
     error: str | None = None
 
 
-def write_tables(rows: Sequence[TrackRow], analysis: Analysis, out: Path) -> None:
-    """Writes track.parquet, changes.parquet and family.parquet, each in one step."""
+def write_tables(rows: Sequence[TrackRow], analysis: Analysis, not_followed: Sequence[NotFollowed], out: Path) -> None:
+    """Writes track.parquet, changes.parquet, family.parquet and not_followed.parquet, each in one step."""
     ordered = sorted(
         rows, key=lambda r: (r.robot, r.date, r.recording, r.effect or "", r.joint or "", r.parameter or "")
     )
@@ -74,6 +76,7 @@ def write_tables(rows: Sequence[TrackRow], analysis: Analysis, out: Path) -> Non
         _replace_file(table, out / TRACK)
     _replace_file(_table(Event, analysis.events), out / CHANGES)
     _replace_file(_table(Standing, analysis.standings), out / FAMILY)
+    _replace_file(_table(NotFollowed, not_followed), out / NOT_FOLLOWED)
 
 
 def read_track(out: Path) -> pa.Table:
@@ -82,7 +85,7 @@ def read_track(out: Path) -> pa.Table:
 
 
 def _table(kind: Any, rows: Sequence[Any]) -> pa.Table:
-    types = {"str": pa.string(), "float": pa.float64(), "bool": pa.bool_(), "datetime": MOMENT}
+    types = {"str": pa.string(), "float": pa.float64(), "bool": pa.bool_(), "datetime": MOMENT, "int": pa.int64()}
     schema = pa.schema([(f.name, types[str(f.type).split(" ")[0]]) for f in fields(kind)])
     return pa.table({f.name: [getattr(r, f.name) for r in rows] for f in fields(kind)}, schema=schema)
 

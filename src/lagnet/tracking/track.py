@@ -16,13 +16,12 @@ import numpy as np
 from lagnet.errors import LagnetError
 from lagnet.tracking.engine import Engine, EngineSettings, open_engine
 from lagnet.tracking.finished import read_finished, remove_parts
+from lagnet.tracking.growth import NotFollowed, grown
 from lagnet.tracking.manifest import Make, Manifest, TrackedRecording, read_manifest
-from lagnet.tracking.servos.new_physics import with_new_payload
-from lagnet.tracking.servos.tracked import Followed, TrackedServos, common_followed, followed_from_plain
+from lagnet.tracking.servos.tracked import Followed, common_followed, followed_from_plain
 from lagnet.tracking.statistics.analyse import Analysis, analyse
 from lagnet.tracking.statistics.series import Observation
 from lagnet.tracking.tables import TrackRow, write_tables
-from lagnet.tracking.tracked_set import effect_from_plain, new_physics
 from lagnet.tracking.work import Calibration, Work, calibrate, diagnose_one, fingerprint_of, fit_one
 
 Progress = Callable[[str, int, int], None]
@@ -38,6 +37,7 @@ class Track:
         analysis: changes, and where each robot stands.
         folder: what was written.
         joints: of each robot, in model order; of those with a diagnosis.
+        not_followed: effects that searches named beyond what is followed.
     """
 
     manifest: Manifest
@@ -45,6 +45,7 @@ class Track:
     analysis: Analysis
     folder: Path
     joints: Mapping[str, tuple[str, ...]]
+    not_followed: tuple[NotFollowed, ...] = ()
 
     @property
     def failed(self) -> tuple[TrackRow, ...]:
@@ -102,13 +103,13 @@ def track(
         sets = _sets(fleet, folder, desk)
         tasks = [_task(r, fleet, sets[r.make], folder, "diagnoses") for r in fleet.recordings]
         told = desk.done("diagnoses", diagnose_one, "diagnosis", tasks)
-        told = _with_new_physics(fleet, tasks, told, folder, desk)
+        told, left_out = grown(tasks, told, folder, lambda title, work: desk.done(title, fit_one, "fit", work))
     observations = [o for r, t in zip(fleet.recordings, told, strict=True) for o in _observations(r, t)]
     analysis = analyse(observations, fleet.settings.false_discovery_rate, fleet.settings.temperature_sigma)
     rows = tuple(_rows(tasks, told, analysis, base, folder))
-    write_tables(rows, analysis, folder)
+    write_tables(rows, analysis, left_out, folder)
     joints = {r.robot: tuple(t["joints"]) for r, t in zip(fleet.recordings, told, strict=True) if "joints" in t}
-    return Track(fleet, rows, analysis, folder, joints)
+    return Track(fleet, rows, analysis, folder, joints, tuple(left_out))
 
 
 def _task(recording: TrackedRecording, fleet: Manifest, tracked: Followed, out: Path, room: str) -> Work:
@@ -152,36 +153,6 @@ def _sets(fleet: Manifest, out: Path, desk: _Desk) -> dict[str, Followed]:
 
 def _used(fleet: Manifest) -> list[Make]:
     return [fleet.makes[name] for name in sorted({r.make for r in fleet.recordings})]
-
-
-def _with_new_physics(
-    fleet: Manifest, tasks: Sequence[Work], told: list[dict[str, Any]], out: Path, desk: _Desk
-) -> list[dict[str, Any]]:
-    """What was told, with the recordings of robots that show new physics fitted again with it, from their first on."""
-    by_robot: dict[str, list[int]] = defaultdict(list)
-    for i, result in enumerate(told):
-        if "rows" in result:
-            by_robot[tasks[i].recording.robot].append(i)
-    again: list[tuple[int, Work]] = []
-    for indices in by_robot.values():
-        known = tasks[indices[0]].tracked
-        larger = _larger(known, [told[i]["new"] for i in indices])
-        if larger is not known:
-            again += [(i, _task(tasks[i].recording, fleet, larger, out, "fits")) for i in indices]
-    fitted = desk.done("fits with new physics", fit_one, "fit", [task for _, task in again])
-    out_told = list(told)
-    for (i, _), result in zip(again, fitted, strict=True):
-        if "rows" in result:
-            out_told[i] = {**told[i], **result}
-    return out_told
-
-
-def _larger(known: Followed, found: Sequence[Sequence[Mapping[str, Any]]]) -> Followed:
-    """The set with the new physics of a robot's recordings; `known` itself where there is none."""
-    if isinstance(known, TrackedServos):
-        return with_new_payload(known, found)
-    new = new_physics(known, [[effect_from_plain(e) for e in effects] for effects in found])
-    return known.with_new(new) if new else known
 
 
 def _observations(recording: TrackedRecording, told: dict[str, Any]) -> Iterable[Observation]:

@@ -19,6 +19,8 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 from jaxtyping import Array
 
+from lagnet.models.devices import chosen_devices
+
 ROWS = "rows"
 FLAG = "xla_force_host_platform_device_count"
 LEAST = 128  # rows of a batch that are worth a device of their own
@@ -52,14 +54,14 @@ def usable_cores() -> int:
 
 def parts_of(batch: int) -> int:
     """Devices that a batch is spread over: as many as divide it into equal parts that are worth it."""
-    many = range(2, len(jax.local_devices()) + 1)
+    many = range(2, len(chosen_devices()) + 1)
     return max((n for n in many if batch % n == 0 and batch >= n * LEAST), default=1)
 
 
 def mesh_for(batch: int) -> Mesh | None:
     """The devices that a batch is spread over, None for one."""
     parts = parts_of(batch)
-    return Mesh(np.array(jax.local_devices()[:parts]), (ROWS,)) if parts > 1 else None
+    return Mesh(np.array(chosen_devices()[:parts]), (ROWS,)) if parts > 1 else None
 
 
 def spread(gradient: Gradient, mesh: Mesh | None) -> Gradient:
@@ -84,5 +86,5 @@ def everywhere(arrays: Any, mesh: Mesh | None) -> Any:
 
 def on_one_device(arrays: Any) -> Any:
     """Arrays from the first device alone, as if there were no other."""
-    first = jax.local_devices()[0]
+    first = chosen_devices()[0]
     return jax.tree.map(lambda x: jax.device_put(x, first) if isinstance(x, jax.Array) else x, arrays)

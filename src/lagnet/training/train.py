@@ -13,6 +13,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from lagnet.models.devices import chosen_devices
 from lagnet.models.dynamics import AbstractDynamics
 from lagnet.models.features import fit_features, guess_joint_types
 from lagnet.models.kinds import ModelSpec, draw, settings_class
@@ -147,6 +148,7 @@ def _stats(spec: ModelSpec, task: Task, fitted: Fitted, penalty: float | None, s
         "kept_step": fitted.history.kept_step,
         "stopped_early": fitted.history.stopped_early,
         "interrupted": fitted.history.interrupted,
+        "device": chosen_devices()[0].device_kind,
         "devices": parts_of(min(task.settings.batch, len(task.samples))),
         "samples": len(task.samples),
         "samples_sha256": task.samples.sha256(),

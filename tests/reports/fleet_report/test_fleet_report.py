@@ -8,7 +8,7 @@ import re
 import pytest
 from tests.reports.fleet_report.fleets import synthetic_fleet
 
-from lagnet.reports.contents.fleet import Fleet
+from lagnet.reports.contents.fleet import Fleet, FleetNotFollowed
 from lagnet.reports.fleet_report import write_fleet_report
 from lagnet.reports.sections.fleet_headline import words_of
 
@@ -65,3 +65,15 @@ def test_recordings_of_one_day_are_told_apart_by_their_time(tmp_path, browse):
     assert "2026-01-05 11:00" in seen.text
     assert re.search(r'text-anchor="end">2026-01-05 11:00<', seen.dom)
     assert re.search(r'text-anchor="start">2026-01-05<', seen.dom)
+
+
+def test_page_tells_what_is_named_and_not_followed(tmp_path):
+    fleet = synthetic_fleet(2, 4)
+    assert "Named and not followed" not in write_fleet_report(fleet, tmp_path / "report.html").read_text()
+    left_out = [FleetNotFollowed("arm_000", "elbow", "command_delay", 3, 4, "2 of 4 recordings <cannot> tell")] * 201
+    text = write_fleet_report(Fleet(fleet.robots, fleet.events, left_out), tmp_path / "report.html").read_text()
+    assert "Named and not followed" in text
+    assert "command delay" in text
+    assert "3 of 4" in text
+    assert "2 of 4 recordings &lt;cannot&gt; tell" in text
+    assert "and 1 more, in not_followed.parquet" in text

@@ -85,12 +85,25 @@ class FleetRobot:
     series: tuple[FleetSeries, ...]
 
 
+@dataclass(frozen=True)
+class FleetNotFollowed:
+    """An effect that searches named and that is not followed; see `lagnet.tracking.growth.NotFollowed`."""
+
+    robot: str
+    joint: str
+    effect: str
+    named: int
+    recordings: int
+    reason: str
+
+
 @dataclass(frozen=True, eq=False)
 class Fleet:
-    """All robots, and what changed, oldest first."""
+    """All robots, what changed, oldest first, and what was named and is not followed."""
 
     robots: Sequence[FleetRobot]
     events: Sequence[FleetEvent]
+    not_followed: Sequence[FleetNotFollowed] = ()
 
     @property
     def newest(self) -> datetime | None:

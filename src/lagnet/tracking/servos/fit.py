@@ -19,8 +19,26 @@ from lagnet.rigid_body.kinematic_tree import kinematic_tree
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 from lagnet.servos.parameters import INDEX, KP, NAMES
 from lagnet.tracking.fixed_fit import SHARE, ParameterRow
-from lagnet.tracking.servos.tracked import PAYLOAD, STILL, TrackedServo, TrackedServos
+from lagnet.tracking.servos.tracked import PAYLOAD, STILL, Added, TrackedServo, TrackedServos
 from lagnet.types import joint_types_of
+
+
+@dataclass(frozen=True)
+class Determined:
+    """How well a recording determines an effect that the set holds beyond that of its make.
+
+    Args:
+        joint, effect: what it is.
+        values, halves: its law parameters by name, with half-widths of their 95 % intervals.
+        wider: largest factor by which it widens the interval of another parameter; None where motion does not tell
+            them apart at all.
+    """
+
+    joint: int
+    effect: str
+    values: dict[str, float]
+    halves: dict[str, float]
+    wider: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +50,14 @@ class ServoFit:
         rows: the parameters that are followed.
         load: shape (dof,), mean magnitude of the torque that the bodies need, with what they carry [N m or N].
         left: shape (dof,), error of rollouts, root mean square [rad or m].
+        determined: of the effects beyond the set of the make, at joints that move.
     """
 
     laws: np.ndarray
     rows: tuple[ParameterRow, ...]
     load: np.ndarray
     left: np.ndarray
+    determined: tuple[Determined, ...] = ()
 
 
 def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain: float = 1.0) -> ServoFit:
@@ -57,7 +77,9 @@ def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain:
     free = {j: s.free for j, s in enumerate(tracked.servos) if s.free and _moves(problem, j)}
     sizes = {j: dict(zip(NAMES, tracked.servos[j].sizes, strict=True)) for j in free}
     body = np.array(tracked.body) if tracked.body else None
-    fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors), body)
+    added = [a for a in tracked.added if a.joint in free]
+    apart = [(a.joint, a.groups) for a in added]
+    fitted = fit_fixed_laws(problem, tracked.laws, free, sizes, np.array(tracked.floors), body, apart)
     rows = [row for j in free for row in _rows(problem, fitted, tracked.servos[j], j, bodies)]
     if body is not None and fitted.share is not None:
         share, half = fitted.share
@@ -65,7 +87,15 @@ def fit_servos(recording: Recording, nominal: Any, tracked: TrackedServos, gain:
         carried = kinematic_tree(with_body(bodies, share * body))
         problem = pose_motion_problem([recording], carried, [gain], tracked.voltage)
     load = np.array([float(np.mean(np.abs(s.load))) for s in problem.series])
-    return ServoFit(fitted.laws, tuple(rows), load, fitted.left)
+    determined = tuple(_determined(fitted, one, wider) for one, wider in zip(added, fitted.wider, strict=True))
+    return ServoFit(fitted.laws, tuple(rows), load, fitted.left, determined)
+
+
+def _determined(fitted: FittedLaws, one: Added, wider: float) -> Determined:
+    names = [group[0] for group in one.groups]
+    values = {n: float(fitted.laws[one.joint, INDEX[n]]) for n in names}
+    halves = {n: fitted.half[one.joint, n] for n in names}
+    return Determined(one.joint, one.effect, values, halves, wider if np.isfinite(wider) else None)
 
 
 def _moves(problem: MotionProblem, joint: int) -> bool:

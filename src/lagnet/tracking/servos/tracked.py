@@ -43,6 +43,15 @@ class TrackedServo:
 
 
 @dataclass(frozen=True)
+class Added:
+    """An effect of one joint that the set holds beyond that of its make, with the law parameters that it set free."""
+
+    joint: int
+    effect: str
+    groups: tuple[Group, ...]
+
+
+@dataclass(frozen=True)
 class TrackedServos:
     """What is fitted to each recording of a make or robot that has commands and no torque.
 
@@ -52,6 +61,7 @@ class TrackedServos:
         left: for each joint, error of rollouts where the set was found, root mean square [rad or m]; empty: not known.
         body: ten inertial parameters of a payload of the last link, whose share is followed; empty: none.
         voltage: of the supply, to which the laws belong [V]; 0: not recorded.
+        added: effects beyond the set of the make; a fit tells how well its recording determines them.
     """
 
     servos: tuple[TrackedServo, ...]
@@ -59,6 +69,7 @@ class TrackedServos:
     left: tuple[float, ...] = ()
     body: tuple[float, ...] = ()
     voltage: float = 0.0
+    added: tuple[Added, ...] = ()
 
     def is_unusual(self, left: np.ndarray) -> bool:
         """Whether errors are clearly larger than where the set was found, at any joint; True if it is not known."""
@@ -80,14 +91,19 @@ def servos_from_plain(plain: Mapping[str, Any]) -> TrackedServos:
         TrackedServo(
             tuple(map(float, s["law"])),
             tuple(map(str, s["effects"])),
-            tuple(tuple(map(str, group)) for group in s["free"]),
+            _groups(s["free"]),
             tuple(map(float, s["sizes"])),
             bool(s["scale_is_set"]),
         )
         for s in plain["servos"]
     )
     numbers = {name: tuple(map(float, plain[name])) for name in ("floors", "left", "body")}
-    return TrackedServos(servos, **numbers, voltage=float(plain["voltage"]))
+    added = tuple(Added(int(a["joint"]), str(a["effect"]), _groups(a["groups"])) for a in plain["added"])
+    return TrackedServos(servos, **numbers, voltage=float(plain["voltage"]), added=added)
+
+
+def _groups(plain: Sequence[Sequence[str]]) -> tuple[Group, ...]:
+    return tuple(tuple(map(str, group)) for group in plain)
 
 
 def servos_of_calibration(found: MotionDiagnosis) -> TrackedServos:

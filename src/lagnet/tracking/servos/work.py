@@ -55,6 +55,7 @@ def servos_fitted(recording: Recording, nominal: Any, tracked: TrackedServos, ga
         "effects": [],
         "load": [float(x) for x in fit.load],
         "left": [float(x) for x in fit.left],
+        "determined": [asdict(d) for d in fit.determined],
     }
 
 

@@ -92,7 +92,7 @@ def fit(dynamics: AbstractDynamics, task: Task) -> Fitted:
         dynamics: weights to start from.
         task: what to lower.
     """
-    with jax.enable_x64(False):
+    with jax.enable_x64(False), jax.default_matmul_precision("float32"):  # a GPU would round products to ten bits
         dynamics = jax.tree.map(lambda x: jnp.asarray(x, jnp.float32) if eqx.is_array(x) else x, dynamics)
         run = _Run(dynamics, task)
         try:

@@ -147,10 +147,19 @@ def _follow(basis: Basis, grad: Array, turn: Array, b2: float) -> Basis:
 
 
 def _orthonormal(stack: Array) -> Array:
-    """Orthonormal columns of each matrix, one after the other.
+    """Orthonormal columns of each matrix, on a processor one after the other, elsewhere all at once.
 
-    A batch of them would be spread over the processor's threads; where each core is a device of JAX, the devices then
+    On a processor a batch of them would be spread over threads; where each core is a device of JAX, the devices then
     wait for each other's threads for ever.
     """
     matrices = stack.reshape(-1, *stack.shape[-2:])
-    return jax.lax.map(lambda x: jnp.linalg.qr(x)[0], matrices).reshape(stack.shape)
+    found = jax.lax.platform_dependent(matrices, cpu=_one_by_one, default=_at_once)
+    return found.reshape(stack.shape)
+
+
+def _one_by_one(matrices: Array) -> Array:
+    return jax.lax.map(lambda x: jnp.linalg.qr(x)[0], matrices)
+
+
+def _at_once(matrices: Array) -> Array:
+    return jnp.linalg.qr(matrices)[0]

@@ -44,3 +44,26 @@ def half_widths(
     half = NORMAL_95 * np.sqrt(np.maximum(variance, 0.0))
     half = half + sum(np.abs(weighted @ spread.T).sum(axis=0) * step for weighted, step in systematic)
     return half, vectors[:, ~seen]
+
+
+def widening(
+    errors: Sequence[np.ndarray], jacobians: Sequence[np.ndarray], floors: np.ndarray, columns: Sequence[int]
+) -> float:
+    """Largest factor by which the interval of a coordinate is wider than if those of `columns` were known.
+
+    Two coordinates that motion tells apart leave each other's intervals as they are; of a pair whose errors are
+    correlated by ρ each is 1/√(1 − ρ²) times as wide.
+
+    Returns:
+        Infinity where `columns` add a direction that no joint shows; 1 where there is no other coordinate.
+    """
+    count = jacobians[0].shape[1]
+    others = np.setdiff1d(np.arange(count), columns)
+    if not others.size:
+        return 1.0
+    with_all, unseen = half_widths(errors, jacobians, floors, np.eye(count)[others])
+    alone, blind = half_widths(errors, [j[:, others] for j in jacobians], floors, np.eye(others.size))
+    if unseen.shape[1] > blind.shape[1]:
+        return np.inf
+    known = (alone > 0.0) & (np.sum(blind**2, axis=1) < 0.5)  # others have no interval that could be wider
+    return float(np.max(with_all[known] / alone[known], initial=1.0))

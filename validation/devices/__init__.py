@@ -1,0 +1,1 @@
+"""Training and batched parts on every device that JAX sees."""
