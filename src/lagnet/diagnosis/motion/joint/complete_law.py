@@ -25,13 +25,15 @@ INSTEAD = (
     ("load_dependent_friction", "gear_friction"),
     ("load_dependent_friction", "quadratic_load_friction"),
 )  # laws of as many parameters
+LIMITS = ("duty_saturation", "torque_saturation")  # of the motor: before laws of friction by its torque are compared
 FURTHER = (
-    "duty_saturation",
+    *LIMITS,
     "gear_friction",
     "directional_load_friction",
     "quadratic_load_friction",
     "static_friction",
     "dead_band",
+    "load_stribeck_friction",
 )
 
 
@@ -57,7 +59,7 @@ def complete_law(case: JointCase, chosen: Selection, named: Selection, data: Joi
     best = _plain(case, chosen, scale)
     for effect in FURTHER:
         best = _with_further(case, best, effect)
-        if effect == FURTHER[0]:
+        if effect == LIMITS[-1]:
             best = _with_equals(case, best, chosen.effects)
     if advantage(chosen.blocks, best.blocks)[0] <= 0.0:
         return named.law
@@ -69,6 +71,8 @@ def _plain(case: JointCase, chosen: Selection, scale: float) -> Selection:
     contained = {c for e in chosen.effects for c in servo_effect(e).contains}
     more = [e for e in IDENTIFIED if e in case.excited and e not in {*chosen.effects, *contained}]
     more = [e for e in more if case.scale_is_set or e != "gain_error"]
+    if "position_bias" not in case.excited and "torque_offset" in case.excited:  # a recorded duty shows the bias
+        more.append("torque_offset")
     tries = [[e for e in more if e != "stribeck_friction"]]
     if "stribeck_friction" in more:
         tries.append([e for e in more if e != "coulomb_friction"])
@@ -103,7 +107,7 @@ def _less(case: JointCase, selected: Selection, effect: str) -> Selection:
 
 def _with_further(case: JointCase, best: Selection, effect: str) -> Selection:
     """The selection with one more effect, where that predicts significantly better."""
-    if effect not in case.excited or effect in best.effects:
+    if effect not in case.excited or effect in best.effects or not servo_effect(effect).acts_beside(best.effects):
         return best
     scale = robust_scale(best.fitted.residual, case.floor)
     found = min(_fits_with(case, best, effect, scale), key=lambda s: s.blocks.mean())

@@ -83,7 +83,8 @@ def _first_selection(case: JointCase) -> Selection:
 
 def _candidates(case: JointCase, selected: Selection) -> list[str]:
     contained = {c for e in selected.effects for c in servo_effect(e).contains}
-    return [n for n in SERVO_CATALOGUE if n in case.excited and n not in selected.effects and n not in contained]
+    new = [n for n in SERVO_CATALOGUE if n in case.excited and n not in {*selected.effects, *contained}]
+    return [n for n in new if servo_effect(n).acts_beside(selected.effects)]
 
 
 def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[Selection | None, tuple[Rejected, ...]]:
