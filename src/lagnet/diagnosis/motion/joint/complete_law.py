@@ -18,6 +18,7 @@ from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.diagnosis.motion.joint.refitting import Selection, groups_of, refit, starts_with
 from lagnet.diagnosis.motion.joint.selection import PLAIN
 from lagnet.servos.catalogue import servo_effect
+from lagnet.servos.parameters import KP
 
 IDENTIFIED = (*PLAIN, "quadratic_drag", "stribeck_friction")  # effects of the complete law, named or not
 INSTEAD = (
@@ -26,6 +27,8 @@ INSTEAD = (
     ("load_dependent_friction", "quadratic_load_friction"),
 )  # laws of as many parameters
 LIMITS = ("duty_saturation", "torque_saturation")  # of the motor: before laws of friction by its torque are compared
+DRIVE = ("gear_friction", "torque_saturation", "load_stribeck_friction")  # of a motor and its gear
+GEAR = (*(e for e in PLAIN if e not in ("load_dependent_friction", "position_bias")), *DRIVE)
 FURTHER = (
     *LIMITS,
     "gear_friction",
@@ -61,9 +64,33 @@ def complete_law(case: JointCase, chosen: Selection, named: Selection, data: Joi
         best = _with_further(case, best, effect)
         if effect == LIMITS[-1]:
             best = _with_equals(case, best, chosen.effects)
+    best = _against_gear(case, best, chosen, scale)
     if advantage(chosen.blocks, best.blocks)[0] <= 0.0:
         return named.law
     return refit_to(case, best, data).law
+
+
+def _against_gear(case: JointCase, best: Selection, chosen: Selection, scale: float) -> Selection:
+    """The selection, or the whole law of a motor and gear at once where that predicts better: one step at a time misses it.
+
+    Friction per load, its fall with speed and a motor that saturates make up for each other: any one beside the wrong
+    values of the others gains nothing.
+    """
+    bias = "position_bias" if "position_bias" in case.excited else "torque_offset"
+    whole = tuple(e for e in (*GEAR, bias) if e in case.excited and (case.scale_is_set or e != "gain_error"))
+    if not set(DRIVE) <= set(whole):
+        return best
+    found = []
+    for law in (best.law, chosen.law, _merged(case.law, case)):
+        for effect in DRIVE:
+            shape = servo_effect(effect)
+            if not any(shape.read(law).values()):
+                values = shape.starts(replace(case.scales, kp=float(law[KP])))[0]
+                law = shape.apply(law, dict(zip([p.name for p in shape.parameters], values, strict=True)))
+        fit = refit(case, whole, law, scale, patient=True)
+        found.append(refit(case, whole, fit.law, robust_scale(fit.fitted.residual, case.floor), patient=True))
+    new = min(found, key=lambda s: s.blocks.mean())
+    return new if advantage(best.blocks, new.blocks)[0] > case.limits.gain else best
 
 
 def _plain(case: JointCase, chosen: Selection, scale: float) -> Selection:
