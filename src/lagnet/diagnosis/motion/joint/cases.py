@@ -9,6 +9,7 @@ import numpy as np
 from lagnet.diagnosis.motion.joint.equation_error import FirstLaw, first_law
 from lagnet.diagnosis.motion.joint.fitting import JointData
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
+from lagnet.diagnosis.motion.joint.self_locking import moved_by_load
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.catalogue import SERVO_CATALOGUE
@@ -65,7 +66,8 @@ def joint_case(
     floor = max(0.5 * resolution, LEAST_ERROR)
     (data, validation), *folds = _folds(problem, fitted, joint, min(problem.step, 0.004))
     scales, scale_is_set = _scales(series, speed, moving, law, start), start.scale_is_set
-    return JointCase(data, validation, law, start.law, scale_is_set, base, scales, floor, excited, limits, tuple(folds))
+    case = JointCase(data, validation, law, start.law, scale_is_set, base, scales, floor, excited, limits, tuple(folds))
+    return replace(case, moved_by_load=moved_by_load(series, speed, moving, start.law))
 
 
 def _shown_by_duty(problem: MotionProblem, joint: int, known: bool) -> set[str]:

@@ -40,6 +40,7 @@ class JointCase:
 
     Args:
         fit, validation: disjoint windows of the motion.
+        moved_by_load: whether the load moved the joint against its motor, so that friction per load is below 1.
         folds: further pairs of them, so that every window is for validation once; none where there is enough motion.
         law: the nominal law.
         start: the law of the equation error, with every plain effect in it.
@@ -61,6 +62,7 @@ class JointCase:
     excited: tuple[str, ...]
     limits: SelectionLimits = field(default_factory=SelectionLimits)
     folds: tuple[tuple[JointData, JointData], ...] = ()
+    moved_by_load: bool = False
 
 
 def sizes_of(scales: Scales) -> dict[str, float]:

@@ -16,6 +16,7 @@ from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
+from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, friction_when_driven
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 QUICK = 4  # iterations of the first fit of a candidate
@@ -158,7 +159,13 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     ):
         if value < limit:
             return gain, Rejected(name, rule, value, limit)
-    return gain, None
+    return gain, refuted_by_load(case, selected.law, name)
+
+
+def refuted_by_load(case: JointCase, law: np.ndarray, name: str) -> Rejected | None:
+    """Friction per load with which the load could never have moved the joint, although it did; None otherwise."""
+    value = friction_when_driven(servo_effect(name), law)
+    return Rejected(name, SELF_LOCKING, value, HOLDS) if case.moved_by_load and value >= HOLDS else None
 
 
 def relative_change(nominal: np.ndarray, law: np.ndarray, name: str) -> float:
