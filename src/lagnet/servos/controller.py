@@ -1,6 +1,7 @@
 """Torque of a position controller: x = clip(r γ (kp e + I) − r kd v, ±r kp E), clip(x / (1 + σ |x|), ±r τ_max).
 
-e is behind a dead band; kp E is full duty; r is the share of the nominal voltage, γ the gains of a recording over those of the law.
+e is behind a dead band; kp E is full duty; r is the share of the nominal voltage, γ the gains of a recording over those
+of the law.
 """
 
 from __future__ import annotations

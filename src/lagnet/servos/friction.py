@@ -1,8 +1,9 @@
 """Dry friction of a gear: F = Fc + Fs g + (K |load| + K_m |τ_m| + K₂ load²)(1 + s g), g = exp(−(v/v_s)²).
 
-K is by the direction of power: while the motor moves the load (sign(v) load > 0) it is K_driving, while the load drives the motor K_driven. A gear with
-K_driven ≥ 1 holds its load by itself. Teeth are pressed by the motor's torque τ_m on one side and by the load on the
-other: K_m = K is friction in proportion to both. Source: Duclusaud et al. 2025 (Better Actuator Models).
+K is by the direction of power: while the motor moves the load (sign(v) load > 0) it is K_driving, while the load drives
+the motor K_driven. A gear with K_driven ≥ 1 holds its load by itself. Teeth are pressed by the motor's torque τ_m on
+one side and by the load on the other: K_m = K is friction in proportion to both; s is what it is larger near rest,
+where teeth run dry. Source: Duclusaud et al. 2025 (Better Actuator Models).
 """
 
 from __future__ import annotations

@@ -126,7 +126,9 @@ class ServoDrivenModel:
         growth = 1.0 + laws[:, INDEX["load_stribeck"]] * near_rest
         dry = laws[:, COULOMB] + laws[:, INDEX["static"]] * near_rest
         dry = dry + growth * (per_load * np.abs(load) + laws[:, INDEX["load_squared"]] * load**2)
-        per_motor = np.minimum(growth * laws[:, INDEX["load_motor"]], 0.99)  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
+        per_motor = np.minimum(
+            growth * laws[:, INDEX["load_motor"]], 0.99
+        )  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
         dry = (dry + per_motor * np.abs(load)) / (1.0 - per_motor * np.sign(side * load))
         spring = laws[:, SPRING] * (np.asarray(q, dtype=float) - laws[:, SPRING_REST])
         return dry * side + spring + (laws[:, VISCOUS] + laws[:, QUADRATIC] * np.abs(v)) * v - laws[:, OFFSET]

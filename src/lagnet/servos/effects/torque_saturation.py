@@ -21,7 +21,9 @@ class TorqueSaturation(ServoEffect):
     name = "torque_saturation"
     title = "Torque saturation"
     formula = "x / (1 + σ |x|)"
-    parameters: ClassVar = (Parameter("sigma", "σ", "1/(N m)", "share of the torque that is lost, per torque", 0.0, np.inf),)
+    parameters: ClassVar = (
+        Parameter("sigma", "σ", "1/(N m)", "share of the torque that is lost, per torque", 0.0, np.inf),
+    )
     frees: ClassVar = (("saturation",),)
     with_it: ClassVar = ("kp",)
     shown_by = "moves and rests at small and large command errors, its duty recorded"

@@ -71,10 +71,10 @@ def complete_law(case: JointCase, chosen: Selection, named: Selection, data: Joi
 
 
 def _against_gear(case: JointCase, best: Selection, chosen: Selection, scale: float) -> Selection:
-    """The selection, or the whole law of a motor and gear at once where that predicts better: one step at a time misses it.
+    """The selection, or the whole law of a motor and its gear where that predicts better.
 
     Friction per load, its fall with speed and a motor that saturates make up for each other: any one beside the wrong
-    values of the others gains nothing.
+    values of the others gains nothing, so that they are fitted at once.
     """
     bias = "position_bias" if "position_bias" in case.excited else "torque_offset"
     whole = tuple(e for e in (*GEAR, bias) if e in case.excited and (case.scale_is_set or e != "gain_error"))
@@ -82,15 +82,19 @@ def _against_gear(case: JointCase, best: Selection, chosen: Selection, scale: fl
         return best
     found = []
     for law in (best.law, chosen.law, _merged(case.law, case)):
-        for effect in DRIVE:
-            shape = servo_effect(effect)
-            if not any(shape.read(law).values()):
-                values = shape.starts(replace(case.scales, kp=float(law[KP])))[0]
-                law = shape.apply(law, dict(zip([p.name for p in shape.parameters], values, strict=True)))
-        fit = refit(case, whole, law, scale, patient=True)
+        fit = refit(case, whole, _with_drive(law, case), scale, patient=True)
         found.append(refit(case, whole, fit.law, robust_scale(fit.fitted.residual, case.floor), patient=True))
     new = min(found, key=lambda s: s.blocks.mean())
     return new if advantage(best.blocks, new.blocks)[0] > case.limits.gain else best
+
+
+def _with_drive(law: np.ndarray, case: JointCase) -> np.ndarray:
+    """The law with the first start of every effect of motor and gear that it does not have."""
+    for effect in map(servo_effect, DRIVE):
+        if not any(effect.read(law).values()):
+            values = effect.starts(replace(case.scales, kp=float(law[KP])))[0]
+            law = effect.apply(law, dict(zip([p.name for p in effect.parameters], values, strict=True)))
+    return law
 
 
 def _plain(case: JointCase, chosen: Selection, scale: float) -> Selection:
