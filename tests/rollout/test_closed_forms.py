@@ -114,3 +114,21 @@ def test_a_load_is_held_with_the_sag_that_the_gain_gives():
 def test_a_torque_limit_bounds_the_acceleration():
     q = rolled(np.full_like(TIME, 100.0), kp=50.0, torque_limit=2.0)
     assert np.abs(q - TIME**2).max() < SECOND_ORDER
+
+
+def test_duty_is_full_beyond_its_error():
+    q = rolled(np.full_like(TIME, 100.0), kp=50.0, full_error=0.04)
+    assert np.abs(q - TIME**2).max() < SECOND_ORDER
+
+
+def test_a_motor_that_saturates_gives_its_share_of_the_torque():
+    q = rolled(np.full_like(TIME, 100.0), kp=50.0, full_error=0.06, saturation=0.5 / 3.0)  # 3 / (1 + 0.5) = 2
+    assert np.abs(q - TIME**2).max() < SECOND_ORDER
+
+
+@pytest.mark.parametrize(("torque", "moves"), [(1.75, False), (1.85, True)])
+def test_load_dependent_friction_that_falls_with_speed_is_largest_at_rest(torque, moves):
+    teeth = {"load_driving": 0.4, "load_driven": 0.4, "load_stribeck": 1.0, "stribeck_speed": 0.2}  # 1 + 0.4 (1 + 1)
+    q = rolled(np.full_like(TIME, 100.0), load=1.0, kp=50.0, torque_limit=torque, **teeth)
+    assert bool(q[-1] > 0.0) == moves
+    assert moves or np.ptp(q) == 0.0

@@ -40,8 +40,8 @@ def main() -> None:
         result["pass"] = {
             "so101_error": all(run["rmse_deg"] <= 0.6 for run in result["so101"]),
             "so101_time": all(run["seconds"] <= 180.0 for run in result["so101"]),
-            "xl330_error": result["xl330"][0]["mean_absolute_error"] <= 0.040,
-            "xl330_time": result["xl330"][0]["seconds"] <= 60.0,
+            "xl330_error": all(run["mean_absolute_error"] <= 0.040 for run in result["xl330"]),
+            "xl330_time": all(run["seconds"] <= 60.0 for run in result["xl330"]),
         }
         text = json.dumps(result, indent=1, allow_nan=False, ensure_ascii=False)
         (HERE / "result.json").write_text(text + "\n", encoding="utf-8")  # after each draw
@@ -88,12 +88,13 @@ def _split(
     fit = [(kp / 100.0, log) for kp, log in logs if kp in fitted]
     held = [(kp / 100.0, log) for kp, log in logs if kp not in fitted]
     gains, recordings = [gain for gain, _ in fit], [log for _, log in fit]
-    begun = time.perf_counter()
+    begun, used = time.perf_counter(), time.process_time()
     found = diagnose_motion(recordings, robot, gains=gains)
-    spent = time.perf_counter() - begun
+    spent, used = time.perf_counter() - begun, time.process_time() - used
     begun = time.perf_counter()
     rival = fitted_by_search(robot, recordings, gains, [0], evaluations, 0, STEP)
-    out = {"fitted_on": list(fitted), "seconds": spent, "rival_seconds": time.perf_counter() - begun}
+    out: dict[str, Any] = {"fitted_on": list(fitted), "seconds": spent, "processor_seconds": used}
+    out["rival_seconds"] = time.perf_counter() - begun
     for key, model in (("mean_absolute_error", found.corrected), ("rival", rival)):
         out[key] = float(np.mean([np.abs(rolled(model, log, gain, 0.002) - log.q).mean() for gain, log in held]))
     return out | {"evaluations": evaluations, "effects": _told(found)}

@@ -17,7 +17,7 @@ from numba import njit
 
 from lagnet.servos.command_delay import integral_at
 from lagnet.servos.controller import controller_torque, outside_dead_band
-from lagnet.servos.friction import dry_friction
+from lagnet.servos.friction import dry_friction, falls_with_speed
 from lagnet.servos.parameters import (
     BACK_EMF,
     BIAS,
@@ -30,7 +30,6 @@ from lagnet.servos.parameters import (
     ROTOR,
     SPRING,
     SPRING_REST,
-    STATIC,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -161,7 +160,7 @@ def next_speed(p, v, m, torque, stiff, damp, brake, load, h):  # pragma: no cove
     if abs(free) <= dry:
         return 0.0
     new = (free - side * dry) / (m + h * (1.0 - early) * damping + 0.25 * h * h * stiff)
-    if p[STATIC] != 0.0 and v * new < 0.0:  # it passes rest
+    if falls_with_speed(p) and v * new < 0.0:  # it passes rest
         motor = torque + damp * v  # there
         if abs(motor - load) <= dry_friction(p, 0.0, load, motor - p[OFFSET], side):
             return 0.0

@@ -19,7 +19,7 @@ from lagnet.rollout.one_joint import explicit_share
 from lagnet.rollout.rigid_bodies import dynamics, workspace
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.controller import controller_torque, outside_dead_band
-from lagnet.servos.friction import dry_friction
+from lagnet.servos.friction import dry_friction, falls_with_speed
 from lagnet.servos.parameters import (
     BACK_EMF,
     BIAS,
@@ -32,7 +32,6 @@ from lagnet.servos.parameters import (
     ROTOR,
     SPRING,
     SPRING_REST,
-    STATIC,
     VISCOUS,
     VOLTAGE_SHARE,
 )
@@ -168,7 +167,7 @@ def _settle(parameters, a, free, load, motor, push, h, v):  # pragma: no cover -
             side = 1.0 if rest > 0.0 else -1.0
             dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
             new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]
-            passes = parameters[j, STATIC] != 0.0 and old[j] * new < 0.0
+            passes = falls_with_speed(parameters[j]) and old[j] * new < 0.0
             if passes and abs(alone) <= h * dry_friction(parameters[j], 0.0, load[j], motor[j], side):
                 new = 0.0  # it rests between
             moved = max(moved, abs(new - v[j]))

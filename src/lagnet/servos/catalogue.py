@@ -14,6 +14,7 @@ from lagnet.servos.effects.gear_friction import GearFriction
 from lagnet.servos.effects.joint_spring import JointSpring
 from lagnet.servos.effects.load_dependent_friction import LoadDependentFriction
 from lagnet.servos.effects.load_error import LoadError
+from lagnet.servos.effects.load_stribeck_friction import LoadStribeckFriction
 from lagnet.servos.effects.position_bias import PositionBias
 from lagnet.servos.effects.quadratic_drag import QuadraticDrag
 from lagnet.servos.effects.quadratic_load_friction import QuadraticLoadFriction
@@ -21,6 +22,7 @@ from lagnet.servos.effects.rotor_inertia import RotorInertia
 from lagnet.servos.effects.static_friction import StaticFriction
 from lagnet.servos.effects.stribeck_friction import StribeckFriction
 from lagnet.servos.effects.torque_offset import TorqueOffset
+from lagnet.servos.effects.torque_saturation import TorqueSaturation
 from lagnet.servos.effects.viscous_friction import ViscousFriction
 
 _EFFECTS: tuple[ServoEffect, ...] = (
@@ -36,9 +38,11 @@ _EFFECTS: tuple[ServoEffect, ...] = (
     GearFriction(),
     StaticFriction(),
     StribeckFriction(),
+    LoadStribeckFriction(),
     QuadraticDrag(),
     DeadBand(),
     DutySaturation(),
+    TorqueSaturation(),
     TorqueOffset(),
     LoadError(),
     JointSpring(),

@@ -1,13 +1,14 @@
-"""Torque of a position controller: clip(r γ (kp e + I) − r kd v, ±r τ_max), e behind a dead band.
+"""Torque of a position controller: x = clip(r γ (kp e + I) − r kd v, ±r kp E), clip(x / (1 + σ |x|), ±r τ_max).
 
-r is the share of the nominal voltage, γ the gains of a recording over those of the law.
+e is behind a dead band; kp E is full duty; r is the share of the nominal voltage, γ the gains of a recording over those
+of the law.
 """
 
 from __future__ import annotations
 
 from numba import njit
 
-from lagnet.servos.parameters import DEAD_BAND, KD, KP, LIMIT
+from lagnet.servos.parameters import DEAD_BAND, FULL_ERROR, KD, KP, LIMIT, SATURATION
 
 
 @njit(cache=True, error_model="numpy")
@@ -25,10 +26,14 @@ def controller_torque(p, error, integral, v, ratio, gain):  # pragma: no cover -
     """Torque at a command error and speed, and the slopes −∂τ/∂q, −∂τ/∂v, zero in saturation or dead band."""
     beyond = outside_dead_band(error, p[DEAD_BAND])
     torque = ratio * (gain * (p[KP] * beyond + integral) - p[KD] * v)
+    full = ratio * p[KP] * p[FULL_ERROR]
+    within = abs(torque) <= full
+    torque = min(max(torque, -full), full)
+    lost = 1.0 + p[SATURATION] * abs(torque)
+    torque /= lost
     limit = ratio * p[LIMIT]
-    if torque > limit:
-        return limit, 0.0, 0.0
-    if torque < -limit:
-        return -limit, 0.0, 0.0
-    stiffness = ratio * gain * p[KP] if beyond != 0.0 or p[DEAD_BAND] == 0.0 else 0.0
-    return torque, stiffness, ratio * p[KD]
+    if abs(torque) > limit or not within:
+        return min(max(torque, -limit), limit), 0.0, 0.0
+    slope = ratio / (lost * lost)
+    stiffness = gain * slope * p[KP] if beyond != 0.0 or p[DEAD_BAND] == 0.0 else 0.0
+    return torque, stiffness, slope * p[KD]

@@ -8,7 +8,7 @@ is no residual torque to regress. So they have a catalogue and a conformance tes
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -51,6 +51,7 @@ class ServoEffect(ABC):
     frees: ClassVar[tuple[tuple[str, ...], ...]]  # law parameters behind each of `parameters`; several share its value
     with_it: ClassVar[tuple[str, ...]] = ()  # law parameters that are fitted again with it
     contains: ClassVar[tuple[str, ...]] = ()  # special cases of it: never named beside it
+    beside: ClassVar[tuple[str, ...]] = ()  # it changes one of these, without which it is nothing
     shown_by: ClassVar[str]
     confused_with: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str]
@@ -76,6 +77,10 @@ class ServoEffect(ABC):
         if not moving.any():
             return "the joint does not move"
         return None
+
+    def acts_beside(self, effects: Collection[str]) -> bool:
+        """Whether it can act where these others do."""
+        return not self.beside or any(e in effects for e in self.beside)
 
 
 class ReversingEffect(ServoEffect):

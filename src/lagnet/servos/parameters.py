@@ -1,9 +1,10 @@
 """The parameters of one servo-driven joint, in the order in which compiled laws take them.
 
 e   = dead_band(u(t − T) − q − δ; b)                     command error behind delay, bias and dead band
-τ_m = clip(r (kp e + ki ∫e dt − kd v), ±r τ_max) − kb v  controller; r = voltage over nominal voltage, 1 if unknown
+x   = clip(r (kp e + ki ∫e dt − kd v), ±r kp E)           controller; r = voltage over nominal voltage, 1 if unknown
+τ_m = clip(x / (1 + σ |x|), ±r τ_max) − kb v               motor
 (M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − k (q − q0) − friction     joint; load holds gravity and the other joints
-friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K_m |τ_m| + K₂ load²] sign(v) + Fv v + Fd v |v|;
+friction = [Fc + Fs g + (K_± |load| + K_m |τ_m| + K₂ load²)(1 + s g)] sign(v) + Fv v + Fd v |v|, g = exp(−(v/v_s)²);
 at rest the bracket bounds it
 """
 
@@ -56,6 +57,9 @@ LAW = (
     LawParameter("load_motor", "", "friction per torque of the motor", 0.0, 0.0, 0.9),
     LawParameter("spring", "N m/rad", "stiffness of a spring between link and base of the joint", 0.0, 0.0, 1e6),
     LawParameter("spring_rest", "rad", "position at which that spring is relaxed", 0.0, -10.0, 10.0),
+    LawParameter("full_error", "rad", "command error of full duty at the law's gain", NO_LIMIT, 1e-6, NO_LIMIT),
+    LawParameter("saturation", "1/(N m)", "share of the motor's torque that is lost, per torque", 0.0, 0.0, 1e3),
+    LawParameter("load_stribeck", "", "further share of load-dependent friction near rest", 0.0, 0.0, 10.0),
 )
 NAMES = tuple(p.name for p in LAW)
 INDEX = {name: i for i, name in enumerate(NAMES)}
@@ -76,7 +80,10 @@ NEUTRAL = np.array([p.neutral for p in LAW])
     LOAD_MOTOR,
     SPRING,
     SPRING_REST,
-) = range(11, 25)
+    FULL_ERROR,
+    SATURATION,
+    LOAD_STRIBECK,
+) = range(11, 28)
 
 
 def law_vector(**values: float) -> np.ndarray:

@@ -100,11 +100,9 @@ class GaussNewton:
     def _moved(self, x: np.ndarray, i: int) -> tuple[float, int | None, NamedEffect | None]:
         """Step of a coordinate, number of the effect that it changes, and that effect; None where nothing changes."""
         step = self._step(x, i)
-        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
-        at = self.slots.of(n)
-        own = np.where(np.arange(x.size) == i, x + step, x)[at]
-        effect, other = (self.slots.effects[n].at_coordinates(c) for c in (x[at], own))
-        return (step, n, other) if other.key != effect.key else (step, None, None)
+        before, after = self.slots.named(x), self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
+        changed = [n for n, (a, b) in enumerate(zip(before, after, strict=True)) if a.key != b.key]
+        return (step, changed[0], after[changed[0]]) if changed else (step, None, None)
 
     def _slopes(self, piece: Segment, total: Superposition, moves: Sequence[tuple]) -> np.ndarray:
         """∂e/∂x of one segment; all its columns are filtered together."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import savgol_filter
 
+from lagnet.diagnosis.motion.recorded_duty import DutyLine, duty_line
 from lagnet.errors import DiagnosisError
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import KinematicTree
@@ -46,6 +47,7 @@ class MotionProblem:
         start_speed: shape (runs, dof), speed at the first sample of each run: zero, but for one that continues another.
         step: longest step of integration [s].
         greatest_duty: shape (dof,), of all recordings, 1 for the full supply; nan where none was recorded.
+        duty_lines: of each joint the controller as its recorded duty shows it, None where it does not.
     """
 
     joints: tuple[str, ...]
@@ -56,6 +58,7 @@ class MotionProblem:
     start_speed: np.ndarray
     step: float
     greatest_duty: np.ndarray
+    duty_lines: tuple[DutyLine | None, ...]
 
     @property
     def duration(self) -> float:
@@ -141,8 +144,9 @@ def pose_motion_problem(
     )
     start = np.array([start_speed(part, _before(recordings, i, continued)) for i, part in parts])
     step = float(np.clip(np.median(np.diff(parts[0][1].time)), 0.001, 0.005))
+    lines = tuple(duty_line(recordings, gains, j) for j in range(len(series)))
     return MotionProblem(
-        recordings[0].joints, tree, series, runs, rows["speed"], start, step, greatest_duty(recordings)
+        recordings[0].joints, tree, series, runs, rows["speed"], start, step, greatest_duty(recordings), lines
     )
 
 

@@ -122,9 +122,13 @@ class ServoDrivenModel:
         load, side = self.nominal.gravity_torque(q), np.tanh(v / SLOW)
         per_load = np.where(side * load > 0.0, laws[:, INDEX["load_driving"]], laws[:, INDEX["load_driven"]])
         pace = np.maximum(laws[:, INDEX["stribeck_speed"]], 1e-9)
-        dry = laws[:, COULOMB] + laws[:, INDEX["static"]] * np.exp(-((v / pace) ** 2))
-        dry = dry + per_load * np.abs(load) + laws[:, INDEX["load_squared"]] * load**2
-        per_motor = laws[:, INDEX["load_motor"]]  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
+        near_rest = np.exp(-((v / pace) ** 2))
+        growth = 1.0 + laws[:, INDEX["load_stribeck"]] * near_rest
+        dry = laws[:, COULOMB] + laws[:, INDEX["static"]] * near_rest
+        dry = dry + growth * (per_load * np.abs(load) + laws[:, INDEX["load_squared"]] * load**2)
+        per_motor = np.minimum(
+            growth * laws[:, INDEX["load_motor"]], 0.99
+        )  # K_m |τ_m| with τ_m = load ± friction, solved for the friction
         dry = (dry + per_motor * np.abs(load)) / (1.0 - per_motor * np.sign(side * load))
         spring = laws[:, SPRING] * (np.asarray(q, dtype=float) - laws[:, SPRING_REST])
         return dry * side + spring + (laws[:, VISCOUS] + laws[:, QUADRATIC] * np.abs(v)) * v - laws[:, OFFSET]

@@ -21,7 +21,13 @@ from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of, without
-from lagnet.diagnosis.motion.joint.selection import NEAR_NOMINAL, WITHIN_INTERVAL, Rejected, relative_change
+from lagnet.diagnosis.motion.joint.selection import (
+    NEAR_NOMINAL,
+    WITHIN_INTERVAL,
+    Rejected,
+    refuted_by_load,
+    relative_change,
+)
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.servos.parameters import INDEX
 
@@ -99,7 +105,7 @@ def fit_named_laws(
         found: diagnoses joint by joint.
     """
     out = _refitted(problem, fitted, laws, found)
-    while nominal := {j: near for j, d in out.items() if (near := _near_nominal(d))}:
+    while nominal := {j: near for j, d in out.items() if (near := (*_near_nominal(d), *_refuted(d)))}:
         out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
     out = _with_intervals(problem, fitted, laws, out)
@@ -165,6 +171,12 @@ def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
     limit = found.case.limits.change
     changes = {e: relative_change(found.case.law, found.named_law, e) for e in found.named.effects}
     return tuple(Rejected(e, NEAR_NOMINAL, change, limit) for e, change in changes.items() if change < limit)
+
+
+def _refuted(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects with which the load could never have moved the joint, although it did."""
+    tests = (refuted_by_load(found.case, found.named_law, e) for e in found.named.effects)
+    return tuple(rejected for rejected in tests if rejected is not None)
 
 
 def _undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:

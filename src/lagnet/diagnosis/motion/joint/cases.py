@@ -9,12 +9,13 @@ import numpy as np
 from lagnet.diagnosis.motion.joint.equation_error import FirstLaw, first_law
 from lagnet.diagnosis.motion.joint.fitting import JointData
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
+from lagnet.diagnosis.motion.joint.self_locking import moved_by_load
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.catalogue import SERVO_CATALOGUE
 from lagnet.servos.effect import Scales
 from lagnet.servos.nominal import NominalServo
-from lagnet.servos.parameters import INDEX, KD, KP, VISCOUS
+from lagnet.servos.parameters import BIAS, FULL_ERROR, INDEX, KD, KP, VISCOUS
 
 FULL_DUTY = 0.98  # recorded duty below which the controller's torque was not limited
 LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
@@ -50,18 +51,30 @@ def joint_case(
     known, law = servo.known[joint], servo.laws[joint].copy()
     if not known:
         law[[KP, VISCOUS]] = start.law[[KP, VISCOUS]]
+    if (line := problem.duty_lines[joint]) is not None:
+        for one in (law, start.law):
+            one[FULL_ERROR] = line.full_error
+            one[BIAS] = one[BIAS] if known else line.bias
     excited = tuple(n for n, e in SERVO_CATALOGUE.items() if e.excitation(series.command, series.q, moving) is None)
     if not known:
         excited = tuple(n for n in excited if n not in ("gain_error", "viscous_friction"))
-    if problem.greatest_duty[joint] < FULL_DUTY:
-        excited = tuple(n for n in excited if n != "duty_saturation")
+    shown = _shown_by_duty(problem, joint, known)
+    excited = tuple(n for n in excited if n not in shown)
     base = () if known else (ESTIMATED if start.scale_is_set else ESTIMATED[1:])
     if base and np.ptp(series.enabled) > 0.0:  # friction alone acts while the drive is off
         base = (*base, ("back_emf",))
     floor = max(0.5 * resolution, LEAST_ERROR)
     (data, validation), *folds = _folds(problem, fitted, joint, min(problem.step, 0.004))
     scales, scale_is_set = _scales(series, speed, moving, law, start), start.scale_is_set
-    return JointCase(data, validation, law, start.law, scale_is_set, base, scales, floor, excited, limits, tuple(folds))
+    case = JointCase(data, validation, law, start.law, scale_is_set, base, scales, floor, excited, limits, tuple(folds))
+    return replace(case, moved_by_load=moved_by_load(series, speed, moving, start.law))
+
+
+def _shown_by_duty(problem: MotionProblem, joint: int, known: bool) -> set[str]:
+    """Effects that are no question of motion: a recorded duty answers them, or without one nothing does."""
+    if problem.duty_lines[joint] is None:
+        return {"torque_saturation", *(["duty_saturation"] if problem.greatest_duty[joint] < FULL_DUTY else [])}
+    return {"duty_saturation"} if known else {"duty_saturation", "position_bias"}
 
 
 def _inside(problem: MotionProblem, fitted: int) -> np.ndarray:

@@ -18,6 +18,7 @@ from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.diagnosis.motion.joint.refitting import Selection, groups_of, refit, starts_with
 from lagnet.diagnosis.motion.joint.selection import PLAIN
 from lagnet.servos.catalogue import servo_effect
+from lagnet.servos.parameters import KP
 
 IDENTIFIED = (*PLAIN, "quadratic_drag", "stribeck_friction")  # effects of the complete law, named or not
 INSTEAD = (
@@ -25,13 +26,17 @@ INSTEAD = (
     ("load_dependent_friction", "gear_friction"),
     ("load_dependent_friction", "quadratic_load_friction"),
 )  # laws of as many parameters
+LIMITS = ("duty_saturation", "torque_saturation")  # of the motor: before laws of friction by its torque are compared
+DRIVE = ("gear_friction", "torque_saturation", "load_stribeck_friction")  # of a motor and its gear
+GEAR = (*(e for e in PLAIN if e not in ("load_dependent_friction", "position_bias")), *DRIVE)
 FURTHER = (
-    "duty_saturation",
+    *LIMITS,
     "gear_friction",
     "directional_load_friction",
     "quadratic_load_friction",
     "static_friction",
     "dead_band",
+    "load_stribeck_friction",
 )
 
 
@@ -57,11 +62,39 @@ def complete_law(case: JointCase, chosen: Selection, named: Selection, data: Joi
     best = _plain(case, chosen, scale)
     for effect in FURTHER:
         best = _with_further(case, best, effect)
-        if effect == FURTHER[0]:
+        if effect == LIMITS[-1]:
             best = _with_equals(case, best, chosen.effects)
+    best = _against_gear(case, best, chosen, scale)
     if advantage(chosen.blocks, best.blocks)[0] <= 0.0:
         return named.law
     return refit_to(case, best, data).law
+
+
+def _against_gear(case: JointCase, best: Selection, chosen: Selection, scale: float) -> Selection:
+    """The selection, or the whole law of a motor and its gear where that predicts better.
+
+    Friction per load, its fall with speed and a motor that saturates make up for each other: any one beside the wrong
+    values of the others gains nothing, so that they are fitted at once.
+    """
+    bias = "position_bias" if "position_bias" in case.excited else "torque_offset"
+    whole = tuple(e for e in (*GEAR, bias) if e in case.excited and (case.scale_is_set or e != "gain_error"))
+    if not set(DRIVE) <= set(whole):
+        return best
+    found = []
+    for law in (best.law, chosen.law, _merged(case.law, case)):
+        fit = refit(case, whole, _with_drive(law, case), scale, patient=True)
+        found.append(refit(case, whole, fit.law, robust_scale(fit.fitted.residual, case.floor), patient=True))
+    new = min(found, key=lambda s: s.blocks.mean())
+    return new if advantage(best.blocks, new.blocks)[0] > case.limits.gain else best
+
+
+def _with_drive(law: np.ndarray, case: JointCase) -> np.ndarray:
+    """The law with the first start of every effect of motor and gear that it does not have."""
+    for effect in map(servo_effect, DRIVE):
+        if not any(effect.read(law).values()):
+            values = effect.starts(replace(case.scales, kp=float(law[KP])))[0]
+            law = effect.apply(law, dict(zip([p.name for p in effect.parameters], values, strict=True)))
+    return law
 
 
 def _plain(case: JointCase, chosen: Selection, scale: float) -> Selection:
@@ -69,6 +102,8 @@ def _plain(case: JointCase, chosen: Selection, scale: float) -> Selection:
     contained = {c for e in chosen.effects for c in servo_effect(e).contains}
     more = [e for e in IDENTIFIED if e in case.excited and e not in {*chosen.effects, *contained}]
     more = [e for e in more if case.scale_is_set or e != "gain_error"]
+    if "position_bias" not in case.excited and "torque_offset" in case.excited:  # a recorded duty shows the bias
+        more.append("torque_offset")
     tries = [[e for e in more if e != "stribeck_friction"]]
     if "stribeck_friction" in more:
         tries.append([e for e in more if e != "coulomb_friction"])
@@ -103,7 +138,7 @@ def _less(case: JointCase, selected: Selection, effect: str) -> Selection:
 
 def _with_further(case: JointCase, best: Selection, effect: str) -> Selection:
     """The selection with one more effect, where that predicts significantly better."""
-    if effect not in case.excited or effect in best.effects:
+    if effect not in case.excited or effect in best.effects or not servo_effect(effect).acts_beside(best.effects):
         return best
     scale = robust_scale(best.fitted.residual, case.floor)
     found = min(_fits_with(case, best, effect, scale), key=lambda s: s.blocks.mean())

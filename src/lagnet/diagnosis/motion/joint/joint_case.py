@@ -40,6 +40,7 @@ class JointCase:
 
     Args:
         fit, validation: disjoint windows of the motion.
+        moved_by_load: whether the load moved the joint against its motor, so that friction per load is below 1.
         folds: further pairs of them, so that every window is for validation once; none where there is enough motion.
         law: the nominal law.
         start: the law of the equation error, with every plain effect in it.
@@ -61,6 +62,7 @@ class JointCase:
     excited: tuple[str, ...]
     limits: SelectionLimits = field(default_factory=SelectionLimits)
     folds: tuple[tuple[JointData, JointData], ...] = ()
+    moved_by_load: bool = False
 
 
 def sizes_of(scales: Scales) -> dict[str, float]:
@@ -76,7 +78,8 @@ def sizes_of(scales: Scales) -> dict[str, float]:
     sizes |= {"bias": 0.05 * scales.error, "dead_band": 0.1 * scales.error, "delay": scales.sample}
     sizes |= {"rotor": 0.3 * scales.inertia + 1e-4 * scales.kp, "quadratic": 0.1 * torque / speed**2}
     shares = ("load_driving", "load_driven", "load_motor", "load_gain")
-    sizes |= dict.fromkeys(shares, 0.2) | {"load_squared": 0.1 / max(torque, 1e-9)}
+    sizes |= dict.fromkeys(shares, 0.2) | {"load_stribeck": 0.3}
+    sizes |= dict.fromkeys(("load_squared", "saturation"), 0.1 / max(torque, 1e-9))
     return sizes | {
         "spring": 0.1 * scales.kp,
         "spring_rest": 0.2,

@@ -57,7 +57,14 @@ def disjoint(groups: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     return out
 
 
-def refit(case: JointCase, effects: Sequence[str], law: np.ndarray, scale: float, iterations: int = FULL) -> Selection:
+def refit(
+    case: JointCase,
+    effects: Sequence[str],
+    law: np.ndarray,
+    scale: float,
+    iterations: int = FULL,
+    patient: bool = False,
+) -> Selection:
     """The law with these effects fitted from a start, and its scores on validation windows.
 
     Args:
@@ -66,9 +73,10 @@ def refit(case: JointCase, effects: Sequence[str], law: np.ndarray, scale: float
         law: the start, shape (len(LAW),).
         scale: robust scale of the residual [rad].
         iterations: of Gauss–Newton.
+        patient: try coarser differences where the cost does not fall.
     """
     coordinates = free_coordinates(groups_of(case, effects), law, sizes_of(case.scales))
-    fitted = fit_law(case.fit, law, coordinates, scale=scale, iterations=iterations)
+    fitted = fit_law(case.fit, law, coordinates, scale=scale, iterations=iterations, patient=patient)
     length = block_length(case.validation, *(validation for _, validation in case.folds))
     blocks = [block_scores(case.validation, fitted.law, case.floor, length)]
     for fit, validation in case.folds:

@@ -103,4 +103,6 @@ def _rivals(case: JointCase, selected: Selection, effect: str) -> list[str]:
         n for n, law in SERVO_CATALOGUE.items() if effect in law.confused_with
     }
     contained = {c for e in selected.effects if e != effect for c in servo_effect(e).contains}
-    return [n for n in SERVO_CATALOGUE if n in named and n in case.excited and n not in {*selected.effects, *contained}]
+    named -= {*selected.effects, *contained}
+    others = [e for e in selected.effects if e != effect]
+    return [n for n in SERVO_CATALOGUE if n in named & set(case.excited) and servo_effect(n).acts_beside(others)]

@@ -16,6 +16,7 @@ from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
+from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, friction_when_driven
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 QUICK = 4  # iterations of the first fit of a candidate
@@ -83,7 +84,8 @@ def _first_selection(case: JointCase) -> Selection:
 
 def _candidates(case: JointCase, selected: Selection) -> list[str]:
     contained = {c for e in selected.effects for c in servo_effect(e).contains}
-    return [n for n in SERVO_CATALOGUE if n in case.excited and n not in selected.effects and n not in contained]
+    new = [n for n in SERVO_CATALOGUE if n in case.excited and n not in {*selected.effects, *contained}]
+    return [n for n in new if servo_effect(n).acts_beside(selected.effects)]
 
 
 def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[Selection | None, tuple[Rejected, ...]]:
@@ -157,7 +159,13 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     ):
         if value < limit:
             return gain, Rejected(name, rule, value, limit)
-    return gain, None
+    return gain, refuted_by_load(case, selected.law, name)
+
+
+def refuted_by_load(case: JointCase, law: np.ndarray, name: str) -> Rejected | None:
+    """Friction per load with which the load could never have moved the joint, although it did; None otherwise."""
+    value = friction_when_driven(servo_effect(name), law)
+    return Rejected(name, SELF_LOCKING, value, HOLDS) if case.moved_by_load and value >= HOLDS else None
 
 
 def relative_change(nominal: np.ndarray, law: np.ndarray, name: str) -> float:
