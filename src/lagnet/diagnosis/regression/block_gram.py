@@ -11,7 +11,7 @@ from lagnet.diagnosis.regression.library import Library
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long compared with the residual's correlation time
 MOST_BLOCKS = 150  # longer recordings get longer blocks
-MOST_SAMPLES = 250_000  # at full rate: of longer recordings, segments spread over them are used
+MOST_SAMPLES = 120_000  # at full rate, twice those of a refit: of longer recordings, segments spread over them are used
 FOLDS = 6  # of cross-validation
 
 
