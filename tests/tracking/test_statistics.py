@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.tracking.fleets import START, observations
@@ -130,6 +132,13 @@ def test_scale_is_logarithmic_only_where_physics_keeps_a_parameter_positive():
     friction = observations("arm_0", np.linspace(0.5, 1.0, N))
     scales = {g[2]: s[0].logarithmic for g, s in series_of([*share, *friction]).items()}
     assert scales == {"payload": False, "coulomb_friction": True}
+
+
+def test_an_interval_of_rounding_alone_has_no_weight():
+    told = observations("arm_0", np.linspace(0.5, 1.0, N))
+    unseen = [replace(o, lower=o.value, upper=np.nextafter(o.value, 2.0)) for o in told[: N // 2]]
+    ((series,),) = series_of([*unseen, *told[N // 2 :]]).values()
+    assert series.days.size == N - N // 2
 
 
 def test_a_drift_ends_at_its_size():

@@ -14,6 +14,7 @@ from lagnet.tracking.statistics.followed_law import lower_bound
 NORMAL = 1.959964  # half a 95 % interval in standard deviations
 LOG_SHARE = 0.9  # of the values of a group that must be clearly positive for a logarithmic scale
 CLEARLY = 0.3  # standard deviation over value below which a value is clearly positive
+ROUNDING = 1e-9  # of a value: an interval no wider than this is none
 LEAST = 3  # recordings of a series below which nothing is said about it
 DAY = 86400.0
 
@@ -94,7 +95,7 @@ def series_of(observations: Sequence[Observation]) -> dict[Group, list[Series]]:
     """Every parameter over time, grouped by what may be pooled; each group on one scale."""
     groups: dict[Group, dict[str, list[Observation]]] = defaultdict(lambda: defaultdict(list))
     for one in observations:
-        if np.isfinite([one.value, one.lower, one.upper]).all() and one.upper > one.lower:
+        if np.isfinite([one.value, one.lower, one.upper]).all() and _has_width(one):
             groups[one.group][one.robot].append(one)
     out = {}
     for group in sorted(groups, key=lambda g: tuple(map(str, g))):
@@ -103,6 +104,11 @@ def series_of(observations: Sequence[Observation]) -> dict[Group, list[Series]]:
         made = [_series(sorted(robots[r], key=lambda o: (o.date, o.recording)), logarithmic) for r in sorted(robots)]
         out[group] = [s for s in made if s.days.size >= LEAST]
     return {group: series for group, series in out.items() if series}
+
+
+def _has_width(one: Observation) -> bool:
+    """Whether an interval is more than rounding: a direction that no motion shows leaves a width of about 1e-17."""
+    return one.upper - one.lower > ROUNDING * max(abs(one.value), abs(one.lower), abs(one.upper))
 
 
 def _is_positive(group: Group, rows: Sequence[Observation]) -> bool:
