@@ -5,6 +5,8 @@ e   = dead_band(u(t − T) − q − δ; b)                     command error be
 (M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − k (q − q0) − friction     joint; load holds gravity and the other joints
 friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K_m |τ_m| + K₂ load²] sign(v) + Fv v + Fd v |v|;
 at rest the bracket bounds it
+Where motor and link part (stiffness or gap not 0) Ia θ'' = τ_m + τ_0 − friction − P, M_ii a = P − gain · load − k (q − q0)
+with P = K dz(θ − q; gap) + D (θ' − v) beyond the gap, of hard stops for K = 0; the drive's q is θ or q, see encoder_side.
 """
 
 from __future__ import annotations
@@ -56,6 +58,8 @@ LAW = (
     LawParameter("load_motor", "", "friction per torque of the motor", 0.0, 0.0, 0.9),
     LawParameter("spring", "N m/rad", "stiffness of a spring between link and base of the joint", 0.0, 0.0, 1e6),
     LawParameter("spring_rest", "rad", "position at which that spring is relaxed", 0.0, -10.0, 10.0),
+    LawParameter("twist_damping", "N m s/rad", "damping between motor and link", 0.0, 0.0, 1e5),
+    LawParameter("encoder_side", "", "where the drive measures: 0 on the motor, 1 on the link", 0.0, 0.0, 1.0),
 )
 NAMES = tuple(p.name for p in LAW)
 INDEX = {name: i for i, name in enumerate(NAMES)}
@@ -76,7 +80,9 @@ NEUTRAL = np.array([p.neutral for p in LAW])
     LOAD_MOTOR,
     SPRING,
     SPRING_REST,
-) = range(11, 25)
+    TWIST_DAMPING,
+    ENCODER_SIDE,
+) = range(11, 27)
 
 
 def law_vector(**values: float) -> np.ndarray:
