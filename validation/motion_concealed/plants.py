@@ -83,8 +83,14 @@ def _record(
     for k in range(time.size):
         q[k] = real.seen()
         for i in range(per):
-            asked = command[k].copy()
+            asked = _held(command, k * per + i, per)
             if late and cause is not None:
-                asked[cause.joint] = command[max(0, k * per + i - late) // per, cause.joint]
+                asked[cause.joint] = _held(command, k * per + i - late, per)[cause.joint]
             real.advance(asked, k / time.size, time[k])
     return Recording(time, ENCODER * np.round(q / ENCODER), None, robot.joints, command=command, path=f"run_{index}")
+
+
+def _held(command: np.ndarray, step: int, per: int) -> np.ndarray:
+    """The command at a step of the engine; one that changes there has half of the push that the step gives, (dof,)."""
+    before, after = command[max(0, step - 1) // per], command[max(0, step) // per]
+    return 0.5 * (before + after)

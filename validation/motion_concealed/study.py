@@ -1,4 +1,4 @@
-"""Servo arms that MuJoCo and PyBullet move, with something hidden: what does a diagnosis on motion name, and what wrongly?
+"""Servo arms that MuJoCo and PyBullet move, with something hidden: what does a diagnosis name, and what wrongly?
 
 python -m validation.motion_concealed.study [--quick] [--seed 21] [--kept FILE] [--out FILE]
 """

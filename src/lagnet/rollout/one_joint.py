@@ -17,7 +17,7 @@ from numba import njit
 
 from lagnet.rollout.damper import explicit_share
 from lagnet.rollout.transmission import yields
-from lagnet.rollout.yielding_joint import FARTHEST, roll_yielding
+from lagnet.rollout.yielding_joint import FARTHEST, FINE, roll_yielding
 from lagnet.servos.command_delay import integral_at
 from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.friction import dry_friction
@@ -106,7 +106,7 @@ def _roll_sets(parameters, series, windows, step, out):  # pragma: no cover - co
         for w in range(windows[0].size):
             where = (windows[0][w], windows[1][w], windows[2][w])
             if yields(parameters[s]):
-                roll_yielding(parameters[s], series, where, windows[3][w], step, out[s])
+                roll_yielding(parameters[s], series, where, windows[3][w], min(step, FINE), out[s])
             else:
                 _roll_window(parameters[s], series, where, windows[3][w], step, out[s])
 

@@ -4,9 +4,9 @@ Over a step of h, with w and v the speeds of motor and link and P the impulse th
 
     B w' + C v' = s − P − h F sign(w'),    A v' = r + P.
 
-A spring gives P = e + E (w' − v') by its twist at mid-step. A play without a spring has hard stops: inside it P = 0, and
-a motor that would leave it arrives at its edge and stays there, an inelastic impact. Both are linear once it is known
-whether they touch, so that one equation for w' with dry friction is left, solved as for a rigid joint.
+A spring gives P = e + E (w' − v') by its twist at mid-step. A play without a spring has hard stops: inside it P = 0,
+and a motor that would leave it arrives at its edge and stays there, an inelastic impact. Both are linear once it is
+known whether they touch, so that one equation for w' with dry friction is left, solved as for a rigid joint.
 Sources: De Luca & Book 2016 (flexible joints); Stewart & Trinkle 1996.
 """
 

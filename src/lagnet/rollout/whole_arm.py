@@ -3,7 +3,7 @@
 Each step of h solves M v' + h D v' + h² K/4 v' = M v + h (τ − b − K h v/4) − h F sign(v') for all speeds and dry
 frictions together: the minimum of ½ v'ᵀ A v' − nᵀ v' + h Σ Fᵢ |v'ᵢ|, found joint by joint (projected Gauss–Seidel).
 A joint whose net torque stays below its friction gets v' = 0 to the last bit; one that reverses is at rest between, and
-goes on only beyond its break-away friction. A joint whose transmission yields has a motor besides, solved with its link.
+goes on only beyond its break-away friction. A joint whose transmission yields has a motor, solved with its link.
 Sources: Moreau 1988; Stewart & Trinkle 1996.
 """
 
@@ -40,6 +40,7 @@ from lagnet.servos.parameters import (
     VOLTAGE_SHARE,
 )
 
+FINE = 0.001  # [s] longest step where a motor is apart from its link
 SWEEPS = 50  # of Gauss–Seidel at most; a few suffice where rotors outweigh the coupling
 STILL = 1e-12  # [rad/s] change of a sweep below which it has converged
 FARTHEST = 1e6  # [rad] beyond which a rollout has diverged
@@ -102,6 +103,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
     for j in range(dof):
         apart[j] = yields(parameters[j])
     if apart.any():
+        step = min(step, FINE)
         _part(tree, parameters, apart, q, angle, mass, bias, work)
     for n in range(last):
         span = time[n + 1] - time[n]
@@ -170,7 +172,7 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
 
 @njit(cache=True, error_model="numpy")
 def _part(tree, parameters, apart, q, angle, mass, bias, work):  # pragma: no cover - compiled
-    """Motor angles and link positions at rest under gravity, where an encoder shows one of them: q, written in place."""
+    """Motor angles and link positions at rest under gravity, of which encoders show one: q; written in place."""
     dynamics(tree, q, np.zeros(q.size), mass, bias, work)
     for j in range(q.size):
         p = parameters[j]

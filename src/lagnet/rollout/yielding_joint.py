@@ -1,4 +1,4 @@
-"""A rollout of one joint whose motor and link are apart: two inertias, joined by a spring or by a play with hard stops."""
+"""A rollout of one joint whose motor and link are apart: two inertias, joined by a spring or by a play."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from lagnet.servos.parameters import (
     VOLTAGE_SHARE,
 )
 
+FINE = 0.002  # [s] longest step where motor and link are apart: contacts are short and springs quick
 FARTHEST = 1e6  # [rad] a rollout that has left this range has diverged and stays there
 
 

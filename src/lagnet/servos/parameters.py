@@ -6,8 +6,8 @@ e   = dead_band(u(t − T) − q − δ; b)                     command error be
 friction = [Fc + Fs exp(−(v/v_s)²) + K_± |load| + K_m |τ_m| + K₂ load²] sign(v) + Fv v + Fd v |v|;
 at rest the bracket bounds it
 Where motor and link part (stiffness or gap not 0), P passes between a motor at θ and a link at q:
-Ia θ'' = τ_m + τ_0 − friction − P,  M_ii a = P − gain · load − k (q − q0),  P = K dz(θ − q; gap) + D (θ' − v) beyond the gap,
-of hard stops for K = 0. The drive measures θ or q, see encoder_side.
+Ia θ'' = τ_m + τ_0 − friction − P,  M_ii a = P − gain · load − k (q − q0),
+P = K dz(θ − q; gap) + D (θ' − v) beyond the gap, of hard stops for K = 0. The drive measures θ or q, see encoder_side.
 """
 
 from __future__ import annotations

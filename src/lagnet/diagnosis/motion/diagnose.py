@@ -95,7 +95,8 @@ def diagnose_motion(
     bodies, servo = nominal_of(robot, servo)
     tree = kinematic_tree(bodies)
     continued = 0 if holdout else len(held)
-    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued)
+    laws = servo.laws if all(servo.known) else None
+    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued, laws)
     limits = limits or SelectionLimits()
     joints = _diagnose_joints(problem, len(fit_on), servo, limits)
     apart = {i: d for i, d in enumerate(joints) if d is not None}

@@ -21,7 +21,13 @@ from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of, without
-from lagnet.diagnosis.motion.joint.selection import NEAR_NOMINAL, WITHIN_INTERVAL, Rejected, relative_change
+from lagnet.diagnosis.motion.joint.selection import (
+    NEAR_NOMINAL,
+    REMAINDER,
+    WITHIN_INTERVAL,
+    Rejected,
+    relative_change,
+)
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.servos.parameters import INDEX
 
@@ -102,6 +108,8 @@ def fit_named_laws(
     while nominal := {j: near for j, d in out.items() if (near := _near_nominal(d))}:
         out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
+    if left := _unexplained(problem, fitted, laws, out):
+        out = _refitted(problem, fitted, laws, {j: _without(d, left.get(j, ())) for j, d in out.items()})
     out = _with_intervals(problem, fitted, laws, out)
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
@@ -156,6 +164,26 @@ def _with_intervals(
     for (joint, group), value, width in zip(rows, values, half, strict=True):
         ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
     return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
+
+
+def _unexplained(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, tuple[Rejected, ...]]:
+    """Names of joints at which all names together leave most of the error of given servos: then the cause is another.
+
+    The errors are those of held-out recordings, rolled out whole with all joints coupled.
+    """
+    held, named, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy(), laws.copy()
+    for joint, d in found.items():
+        named[joint], nominal[joint] = d.named_law, d.case.law
+    before, after = ([float(np.sqrt(np.mean(e**2))) for e in held.errors(x)] for x in (nominal, named))
+    out = {}
+    for (joint, d), was, is_ in zip(found.items(), before, after, strict=True):
+        limits = d.case.limits
+        limit = max(limits.remainder * was, limits.unexplained * d.case.floor)
+        if not d.case.base and d.named.effects and is_ > limit:
+            out[joint] = tuple(Rejected(e, REMAINDER, is_, limit) for e in d.named.effects)
+    return out
 
 
 def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:

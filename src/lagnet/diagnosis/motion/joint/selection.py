@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.diagnosis.motion.joint.block_scores import advantage
-from lagnet.diagnosis.motion.joint.fitting import robust_scale
+from lagnet.diagnosis.motion.joint.fitting import Fitted, robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
@@ -22,6 +22,7 @@ QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
 WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
+REMAINDER = "remainder"  # rule: with all names together most of the error remains
 NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
     "gain_error",
@@ -47,6 +48,9 @@ class Rejected:
 def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     """The effects of one joint, and those that were considered in the last round and not named."""
     selected = _first_selection(case)
+    if not case.base:
+        alone = [_alone(case, name, selected.fitted.scale) for name in case.excited]
+        selected = min((selected, *alone), key=_penalised_score)
     last: tuple[Rejected, ...] = ()
     while len(selected.effects) < MOST_EFFECTS:
         scale = robust_scale(selected.fitted.residual, case.floor)
@@ -58,18 +62,6 @@ def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     return _backward(case, selected, last)
 
 
-def unless_unexplained(case: JointCase, chosen: Selection) -> tuple[Selection, tuple[Rejected, ...]]:
-    """The selection, or none where it leaves most of the error of a given servo: then the cause is another."""
-    if case.base or not chosen.effects:
-        return chosen, ()
-    before, after = (float(np.sqrt(np.mean(case.validation.errors(law) ** 2))) for law in (case.law, chosen.law))
-    limit = max(case.limits.remainder * before, case.limits.unexplained * case.floor)
-    if after <= limit:
-        return chosen, ()
-    scale = robust_scale(case.fit.errors(case.law), case.floor)
-    return refit(case, (), case.law, scale), tuple(Rejected(e, "remainder", after, limit) for e in chosen.effects)
-
-
 def _first_selection(case: JointCase) -> Selection:
     """All plain effects together, from the law of the equation error; backward elimination follows."""
     plain = tuple(n for n in PLAIN if n in case.excited)
@@ -79,6 +71,14 @@ def _first_selection(case: JointCase) -> Selection:
     scale = robust_scale(case.fit.errors(law), case.floor)
     selected = refit(case, plain, law, scale)
     return refit(case, plain, selected.law, robust_scale(selected.fitted.residual, case.floor))
+
+
+def _alone(case: JointCase, name: str, scale: float) -> Selection:
+    """One effect by itself, from the given law: what has another structure is not found from the plain effects' law."""
+    start = Selection((), Fitted(case.law, np.inf, np.zeros(0), np.zeros((0, 0)), scale), np.zeros(0))
+    tries = [refit(case, (name,), law, scale, QUICK) for law in starts_with(case, start, name)]
+    best = min(tries, key=lambda s: s.fitted.cost)
+    return refit(case, (name,), best.law, scale)
 
 
 def _candidates(case: JointCase, selected: Selection) -> list[str]:
