@@ -22,6 +22,7 @@ QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
 WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
+NO_GAIN = "no_holdout_gain"  # rule: held-out motion is predicted as well without
 REMAINDER = "remainder"  # rule: with all names together most of the error remains
 NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
@@ -74,11 +75,16 @@ def _first_selection(case: JointCase) -> Selection:
 
 
 def _alone(case: JointCase, name: str, scale: float) -> Selection:
-    """One effect by itself, from the given law: what has another structure is not found from the plain effects' law."""
+    """One effect by itself, from the given law: what has another structure is not found from the plain effects' law.
+
+    Beside it stand those whose parameters it sets free, else it would be selected for what they gain.
+    """
+    beside = (n for n in case.excited if {g[0] for g in servo_effect(n).frees} <= set(servo_effect(name).with_it))
+    effects = (*beside, name)
     start = Selection((), Fitted(case.law, np.inf, np.zeros(0), np.zeros((0, 0)), scale), np.zeros(0))
-    tries = [refit(case, (name,), law, scale, QUICK) for law in starts_with(case, start, name)]
+    tries = [refit(case, effects, law, scale, QUICK) for law in starts_with(case, start, name)]
     best = min(tries, key=lambda s: s.fitted.cost)
-    return refit(case, (name,), best.law, scale)
+    return refit(case, effects, best.law, scale)
 
 
 def _candidates(case: JointCase, selected: Selection) -> list[str]:
@@ -99,7 +105,7 @@ def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[
     for name, found in fitted:
         gain, errors = advantage(selected.blocks, found.blocks)
         if gain < case.limits.gain:
-            rejected.append(Rejected(name, "no_holdout_gain", gain, case.limits.gain))
+            rejected.append(Rejected(name, NO_GAIN, gain, case.limits.gain))
         elif errors < case.limits.errors:
             rejected.append(Rejected(name, "not_significant", errors, case.limits.errors))
         elif best is None or _penalised_score(found) < _penalised_score(best):
@@ -150,7 +156,7 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     change = relative_change(case.law, selected.law, name)
     limits = case.limits
     for rule, value, limit in (
-        ("no_holdout_gain", gain, limits.gain),
+        (NO_GAIN, gain, limits.gain),
         ("not_significant", errors, limits.errors),
         ("below_resolution", difference, limits.steps * case.floor),
         (NEAR_NOMINAL, change, limits.change),
