@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.complete_or_named import no_worse_than_named
 from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint.cases import joint_case
@@ -101,6 +102,7 @@ def diagnose_motion(
     joints = _diagnose_joints(problem, len(fit_on), servo, limits)
     apart = {i: d for i, d in enumerate(joints) if d is not None}
     apart = fit_named_laws(problem, len(fit_on), servo.laws, apart)
+    apart = no_worse_than_named(problem, len(fit_on), servo.laws, apart)
     payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
     joints = tuple(beside.get(i) for i in range(len(joints)))
     loaded = bodies if payload is None else with_body(bodies, payload.body)

@@ -21,6 +21,7 @@ from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
+EQUAL = 0.005  # of scores: half the penalty of a parameter, so that no count of parameters is overruled
 WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
 NO_GAIN = "no_holdout_gain"  # rule: held-out motion is predicted as well without
 REMAINDER = "remainder"  # rule: with all names together most of the error remains
@@ -50,8 +51,10 @@ def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     """The effects of one joint, and those that were considered in the last round and not named."""
     selected = _first_selection(case)
     if not case.base:
-        alone = [_alone(case, name, selected.fitted.scale) for name in case.excited]
-        selected = min((selected, *alone), key=_penalised_score)
+        names = (*PLAIN, *(n for n in SERVO_CATALOGUE if n not in PLAIN))
+        alone = [_alone(case, name, selected.fitted.scale) for name in names if name in case.excited]
+        best = min(map(_penalised_score, (selected, *alone)))
+        selected = next(s for s in (selected, *alone) if _penalised_score(s) < best + EQUAL)  # plain ones first
     last: tuple[Rejected, ...] = ()
     while len(selected.effects) < MOST_EFFECTS:
         scale = robust_scale(selected.fitted.residual, case.floor)
