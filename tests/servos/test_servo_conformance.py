@@ -17,7 +17,7 @@ from lagnet.servos.servo_file import read_servo_file
 
 REFERENCES = (Path(__file__).parents[2] / "docs" / "references.md").read_text(encoding="utf-8")
 SCALES = Scales(torque=1.0, speed=0.5, error=0.05, inertia=0.01, sample=0.02, kp=10.0)
-OTHER_ROUTE = {"payload", "joint_elasticity", "backlash"}  # rivals that only torque can show so far
+OTHER_ROUTE = {"payload"}  # a rival that the whole arm shows
 
 
 @pytest.mark.parametrize("name", SERVO_CATALOGUE)

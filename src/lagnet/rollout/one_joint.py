@@ -15,6 +15,9 @@ from math import ceil
 import numpy as np
 from numba import njit
 
+from lagnet.rollout.damper import explicit_share
+from lagnet.rollout.transmission import yields
+from lagnet.rollout.yielding_joint import FARTHEST, FINE, roll_yielding
 from lagnet.servos.command_delay import integral_at
 from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.friction import dry_friction, falls_with_speed
@@ -33,8 +36,6 @@ from lagnet.servos.parameters import (
     VISCOUS,
     VOLTAGE_SHARE,
 )
-
-FARTHEST = 1e6  # [rad] a rollout that has left this range has diverged and stays there
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,14 +103,17 @@ def roll_out(parameters: np.ndarray, series: JointSeries, windows: Windows, step
 def _roll_sets(parameters, series, windows, step, out):  # pragma: no cover - compiled
     for s in range(parameters.shape[0]):
         for w in range(windows[0].size):
-            _roll_window(
-                parameters[s], series, windows[0][w], windows[1][w], windows[2][w], windows[3][w], step, out[s]
-            )
+            where = (windows[0][w], windows[1][w], windows[2][w])
+            if yields(parameters[s]):
+                roll_yielding(parameters[s], series, where, windows[3][w], min(step, FINE), out[s])
+            else:
+                _roll_window(parameters[s], series, where, windows[3][w], step, out[s])
 
 
 @njit(cache=True, error_model="numpy")
-def _roll_window(p, series, first, last, floor, speed, step, out):  # pragma: no cover - compiled
+def _roll_window(p, series, where, speed, step, out):  # pragma: no cover - compiled
     time, command, integral, measured, mass, load, slope, ratio, gain, enabled = series
+    first, last, floor = where
     q, v, total, k = out[first], speed, 0.0, first
     for n in range(first, last):
         span = time[n + 1] - time[n]
@@ -140,12 +144,6 @@ def _roll_window(p, series, first, last, floor, speed, step, out):  # pragma: no
             if not abs(q) < FARTHEST:
                 q, v = FARTHEST, 0.0
         out[n + 1] = q
-
-
-@njit(cache=True, error_model="numpy")
-def explicit_share(damping, m, h):  # pragma: no cover - compiled
-    """Share of a damper that is taken at the start of the step: half (second order) where the step resolves it."""
-    return 0.5 if h * damping <= 2.0 * m else m / (h * damping)
 
 
 @njit(cache=True, error_model="numpy")

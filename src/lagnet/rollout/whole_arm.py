@@ -3,7 +3,7 @@
 Each step of h solves M v' + h D v' + h² K/4 v' = M v + h (τ − b − K h v/4) − h F sign(v') for all speeds and dry
 frictions together: the minimum of ½ v'ᵀ A v' − nᵀ v' + h Σ Fᵢ |v'ᵢ|, found joint by joint (projected Gauss–Seidel).
 A joint whose net torque stays below its friction gets v' = 0 to the last bit; one that reverses is at rest between, and
-goes on only beyond its break-away friction.
+goes on only beyond its break-away friction. A joint whose transmission yields has a motor, solved with its link.
 Sources: Moreau 1988; Stewart & Trinkle 1996.
 """
 
@@ -15,8 +15,9 @@ import numpy as np
 from numba import njit
 
 from lagnet.rigid_body.kinematic_tree import KinematicTree
-from lagnet.rollout.one_joint import explicit_share
+from lagnet.rollout.damper import explicit_share
 from lagnet.rollout.rigid_bodies import dynamics, workspace
+from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest, yields
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.friction import dry_friction, falls_with_speed
@@ -25,6 +26,8 @@ from lagnet.servos.parameters import (
     BIAS,
     DEAD_BAND,
     DELAY,
+    ENCODER_SIDE,
+    GAP,
     KI,
     LOAD_GAIN,
     OFFSET,
@@ -36,6 +39,7 @@ from lagnet.servos.parameters import (
     VOLTAGE_SHARE,
 )
 
+FINE = 0.001  # [s] longest step where a motor is apart from its link
 SWEEPS = 50  # of Gauss–Seidel at most; a few suffice where rotors outweigh the coupling
 STILL = 1e-12  # [rad/s] change of a sweep below which it has converged
 FARTHEST = 1e6  # [rad] beyond which a rollout has diverged
@@ -93,6 +97,13 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
     motor, push = np.empty(dof), np.empty(dof)
     cursor = np.zeros(dof, dtype=np.int64)
     out[0] = q
+    apart = np.zeros(dof, dtype=np.bool_)
+    angle, w, rows, sides = q.copy(), v.copy(), np.zeros((dof, 4)), np.zeros(dof)  # of motors
+    for j in range(dof):
+        apart[j] = yields(parameters[j])
+    if apart.any():
+        step = min(step, FINE)
+        _part(tree, parameters, apart, q, angle, mass, bias, work)
     for n in range(last):
         span = time[n + 1] - time[n]
         pieces = max(1, ceil(span / step - 1e-9))
@@ -111,14 +122,25 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 load[j] = p[LOAD_GAIN] * bias[j] + p[SPRING] * (q[j] - p[SPRING_REST])
                 torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
                 viscous = p[VISCOUS] + p[QUADRATIC] * abs(v[j])
+                at_motor = apart[j] and p[ENCODER_SIDE] <= 0.5
+                seen, seen_speed = (angle[j], w[j]) if at_motor else (q[j], v[j])
                 if enabled[n, j] > 0.5:
-                    error = u - q[j] - p[BIAS]
+                    error = u - seen - p[BIAS]
                     total[j] += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
                     r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n, j] - 1.0)
-                    torque, stiff, damp = controller_torque(p, error, total[j], v[j], r, gain[n, j])
+                    torque, stiff, damp = controller_torque(p, error, total[j], seen_speed, r, gain[n, j])
                     brake = p[BACK_EMF]
                 else:
                     total[j] = 0.0
+                if apart[j]:
+                    rows[j] = motor_row(p, w[j], v[j], torque, stiff, damp, brake, p[LOAD_GAIN] * mass[j, j], h)
+                    motor[j] = torque - brake * w[j]
+                    free[j] = -h * (load[j] + 0.25 * h * p[SPRING] * v[j])
+                    for m in range(dof):
+                        a[j, m] = p[LOAD_GAIN] * mass[j, m]
+                        free[j] += a[j, m] * v[m]
+                    a[j, j] += 0.25 * h * h * p[SPRING]
+                    continue
                 stiff += p[SPRING]
                 motor[j] = torque - brake * v[j]
                 push[j] = torque + damp * v[j] + p[OFFSET] - load[j]  # at rest
@@ -133,13 +155,32 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 a[j, j] += p[ROTOR] + h * (1.0 - early) * damping + 0.25 * h * h * stiff
             for j in range(dof):  # q moves half a step by the old speed, half by the new
                 q[j] += 0.5 * h * v[j]
-            _settle(parameters, a, free, load, motor, push, h, v)
+                angle[j] += 0.5 * h * w[j]
+            twist = angle - q - 0.5 * h * (w - v)  # before the step
+            _settle(parameters, a, free, load, motor, push, h, v, (apart, rows, twist, w, sides))
             for j in range(dof):
                 q[j] += 0.5 * h * v[j]
+                angle[j] += 0.5 * h * w[j]
                 if not abs(q[j]) < FARTHEST:
-                    q[j], v[j] = FARTHEST, 0.0
+                    q[j], v[j], angle[j], w[j] = FARTHEST, 0.0, FARTHEST, 0.0
+                if sides[j] != 0.0:
+                    angle[j] = q[j] + sides[j] * parameters[j, GAP]
         for j in range(dof):
-            out[n + 1, j] = q[j]
+            out[n + 1, j] = angle[j] if apart[j] and parameters[j, ENCODER_SIDE] <= 0.5 else q[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _part(tree, parameters, apart, q, angle, mass, bias, work):  # pragma: no cover - compiled
+    """Motor angles and link positions at rest under gravity, of which encoders show one: q; written in place."""
+    dynamics(tree, q, np.zeros(q.size), mass, bias, work)
+    for j in range(q.size):
+        p = parameters[j]
+        if apart[j]:
+            twist = twist_at_rest(p, p[LOAD_GAIN] * bias[j] + p[SPRING] * (q[j] - p[SPRING_REST]))
+            if p[ENCODER_SIDE] > 0.5:
+                angle[j] += twist
+            else:
+                q[j] -= twist
 
 
 @njit(cache=True, error_model="numpy")
@@ -153,9 +194,13 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
 
 
 @njit(cache=True, error_model="numpy")
-def _settle(parameters, a, free, load, motor, push, h, v):  # pragma: no cover - compiled
-    """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest."""
-    old = v.copy()
+def _settle(parameters, a, free, load, motor, push, h, v, motors):  # pragma: no cover - compiled
+    """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest.
+
+    motors: of yielding transmissions, with their speeds and sides of contact, written in place.
+    """
+    apart, rows, twist, w, sides = motors
+    old, before = v.copy(), w.copy()
     for _ in range(SWEEPS):
         moved = 0.0
         for j in range(v.size):
@@ -164,6 +209,14 @@ def _settle(parameters, a, free, load, motor, push, h, v):  # pragma: no cover -
                 if m != j:
                     rest -= a[j, m] * v[m]
                     alone -= a[j, m] * (v[m] - old[m])
+            if apart[j]:
+                row = (rows[j, 0], rows[j, 1], rows[j, 2], rows[j, 3])
+                w[j], new, sides[j] = joined_speeds(
+                    parameters[j], row, a[j, j], rest, twist[j], before[j], old[j], load[j], motor[j], h
+                )
+                moved = max(moved, abs(new - v[j]))
+                v[j] = new
+                continue
             side = 1.0 if rest > 0.0 else -1.0
             dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
             new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]

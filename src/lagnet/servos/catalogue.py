@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lagnet.errors import EffectError, closest
 from lagnet.servos.effect import ServoEffect
+from lagnet.servos.effects.backlash import Backlash
 from lagnet.servos.effects.command_delay import CommandDelay
 from lagnet.servos.effects.coulomb_friction import CoulombFriction
 from lagnet.servos.effects.dead_band import DeadBand
@@ -11,6 +12,7 @@ from lagnet.servos.effects.directional_load_friction import DirectionalLoadFrict
 from lagnet.servos.effects.duty_saturation import DutySaturation
 from lagnet.servos.effects.gain_error import GainError
 from lagnet.servos.effects.gear_friction import GearFriction
+from lagnet.servos.effects.joint_elasticity import JointElasticity
 from lagnet.servos.effects.joint_spring import JointSpring
 from lagnet.servos.effects.load_dependent_friction import LoadDependentFriction
 from lagnet.servos.effects.load_error import LoadError
@@ -46,6 +48,8 @@ _EFFECTS: tuple[ServoEffect, ...] = (
     TorqueOffset(),
     LoadError(),
     JointSpring(),
+    JointElasticity(),
+    Backlash(),
 )
 SERVO_CATALOGUE: dict[str, ServoEffect] = {effect.name: effect for effect in _EFFECTS}
 

@@ -49,6 +49,7 @@ class ServoEffect(ABC):
     formula: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     frees: ClassVar[tuple[tuple[str, ...], ...]]  # law parameters behind each of `parameters`; several share its value
+    chosen: ClassVar[tuple[str, ...]] = ()  # law parameters that a start sets and no fit moves
     with_it: ClassVar[tuple[str, ...]] = ()  # law parameters that are fitted again with it
     contains: ClassVar[tuple[str, ...]] = ()  # special cases of it: never named beside it
     beside: ClassVar[tuple[str, ...]] = ()  # it changes one of these, without which it is nothing

@@ -6,6 +6,9 @@ x   = clip(r (kp e + ki ∫e dt − kd v), ±r kp E)           controller; r = v
 (M_ii + Ia) a = τ_m + τ_0 − gain · load(q) − k (q − q0) − friction     joint; load holds gravity and the other joints
 friction = [Fc + Fs g + (K_± |load| + K_m |τ_m| + K₂ load²)(1 + s g)] sign(v) + Fv v + Fd v |v|, g = exp(−(v/v_s)²);
 at rest the bracket bounds it
+Where motor and link part (stiffness or gap not 0), P passes between a motor at θ and a link at q:
+Ia θ'' = τ_m + τ_0 − friction − P,  M_ii a = P − gain · load − k (q − q0),
+P = K dz(θ − q; gap) + D (θ' − v) beyond the gap, of hard stops for K = 0. The drive measures θ or q, see encoder_side.
 """
 
 from __future__ import annotations
@@ -60,6 +63,8 @@ LAW = (
     LawParameter("full_error", "rad", "command error of full duty at the law's gain", NO_LIMIT, 1e-6, NO_LIMIT),
     LawParameter("saturation", "1/(N m)", "share of the motor's torque that is lost, per torque", 0.0, 0.0, 1e3),
     LawParameter("load_stribeck", "", "further share of load-dependent friction near rest", 0.0, 0.0, 10.0),
+    LawParameter("twist_damping", "N m s/rad", "damping between motor and link", 0.0, 0.0, 1e5),
+    LawParameter("encoder_side", "", "where the drive measures: 0 on the motor, 1 on the link", 0.0, 0.0, 1.0),
 )
 NAMES = tuple(p.name for p in LAW)
 INDEX = {name: i for i, name in enumerate(NAMES)}
@@ -83,7 +88,9 @@ NEUTRAL = np.array([p.neutral for p in LAW])
     FULL_ERROR,
     SATURATION,
     LOAD_STRIBECK,
-) = range(11, 28)
+    TWIST_DAMPING,
+    ENCODER_SIDE,
+) = range(11, 30)
 
 
 def law_vector(**values: float) -> np.ndarray:

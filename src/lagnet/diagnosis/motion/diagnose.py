@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.complete_or_named import no_worse_than_named
 from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint.cases import joint_case
@@ -95,11 +96,13 @@ def diagnose_motion(
     bodies, servo = nominal_of(robot, servo)
     tree = kinematic_tree(bodies)
     continued = 0 if holdout else len(held)
-    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued)
+    laws = servo.laws if all(servo.known) else None
+    problem = pose_motion_problem([*fit_on, *held], tree, factors, median_voltage(fit_on), continued, laws)
     limits = limits or SelectionLimits()
     joints = _diagnose_joints(problem, len(fit_on), servo, limits)
     apart = {i: d for i, d in enumerate(joints) if d is not None}
     apart = fit_named_laws(problem, len(fit_on), servo.laws, apart)
+    apart = no_worse_than_named(problem, len(fit_on), servo.laws, apart)
     payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
     joints = tuple(beside.get(i) for i in range(len(joints)))
     loaded = bodies if payload is None else with_body(bodies, payload.body)

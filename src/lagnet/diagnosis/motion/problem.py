@@ -8,17 +8,19 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from lagnet.diagnosis.motion.recorded_duty import DutyLine, duty_line
+from lagnet.diagnosis.motion.sharpened_rates import sharpened_rates
+from lagnet.diagnosis.motion.smoothing import SMOOTHING, motion_rates
 from lagnet.errors import DiagnosisError
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.measured_load import measured_load
 from lagnet.rollout.one_joint import JointSeries, Windows
+from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.command_delay import command_integral
 
-SMOOTHING = 0.16  # [s] stretch over which a cubic gives speed and acceleration
+ROLLED = 0.004  # [s] longest step of a rollout of the nominal servos
 SLOPES = 0.1  # [s] between poses at which the derivative of the load is computed
 WINDOW = (2.0, 4.0)  # [s] least and greatest length of a rollout from measured positions
 WINDOWS = 60  # that there should be at least
@@ -112,6 +114,7 @@ def pose_motion_problem(
     gains: Sequence[float] | None = None,
     voltage: float = 0.0,
     continued: int = 0,
+    laws: np.ndarray | None = None,
 ) -> MotionProblem:
     """Commands, motion and nominal loads of recordings, joint by joint.
 
@@ -121,6 +124,7 @@ def pose_motion_problem(
         gains: gains of the controller in each recording over those of the law, 1 where None.
         voltage: nominal supply [V]; 0: the median of what was recorded.
         continued: so many recordings at the end may be the last stretches of as many at the beginning.
+        laws: shape (dof, len(LAW)), of nominal servos, whose rollouts sharpen speed and acceleration; None: not known.
 
     Raises:
         DiagnosisError: a recording without commands, fewer than ten samples in every trajectory, or gains that are not
@@ -133,7 +137,11 @@ def pose_motion_problem(
     if not parts:
         raise DiagnosisError("no trajectory has ten samples", next_step="give longer recordings")
     voltage = voltage or median_voltage(recordings)
-    blocks = [_block(part, tree, 1.0 if gains is None else gains[i], voltage) for i, part in parts]
+    start = np.array([start_speed(part, _before(recordings, i, continued)) for i, part in parts])
+    blocks = [
+        _block(part, tree, 1.0 if gains is None else gains[i], voltage, laws, v0)
+        for (i, part), v0 in zip(parts, start, strict=True)
+    ]
     sizes = np.cumsum([0, *(len(part) for _, part in parts)])
     runs = tuple(Run(i, int(sizes[k]), int(sizes[k + 1]) - 1) for k, (i, _) in enumerate(parts))
     rows = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
@@ -142,7 +150,6 @@ def pose_motion_problem(
         JointSeries(*(np.ascontiguousarray(rows[n] if n == "time" else rows[n][:, j]) for n in names))
         for j in range(parts[0][1].n_dof)
     )
-    start = np.array([start_speed(part, _before(recordings, i, continued)) for i, part in parts])
     step = float(np.clip(np.median(np.diff(parts[0][1].time)), 0.001, 0.005))
     lines = tuple(duty_line(recordings, gains, j) for j in range(len(series)))
     return MotionProblem(
@@ -183,17 +190,28 @@ def median_voltage(recordings: Sequence[Recording]) -> float:
     return float(np.median(np.concatenate(found))) if found else 0.0
 
 
-def _block(part: Recording, tree: KinematicTree, gain: float, voltage: float) -> dict[str, np.ndarray]:
+def _block(
+    part: Recording, tree: KinematicTree, gain: float, voltage: float, laws: np.ndarray | None, v0: np.ndarray
+) -> dict[str, np.ndarray]:
     """The columns of one trajectory, each of shape (n, dof) beside `time`."""
     if part.command is None:
         raise DiagnosisError(
             "holds no commands", where=part.path or None, next_step="record command_i, or diagnose on torque"
         )
     command, q = np.array(part.command), np.array(part.q)
-    speed, acceleration = motion_rates(part.time, q)
+    ones = np.ones_like(q)
+    signals = {
+        "ratio": ones if part.voltage is None or not voltage else np.array(part.voltage) / voltage,
+        "gain": gain * ones,
+        "enabled": ones if part.enabled is None else np.array(part.enabled, dtype=float),
+    }
+    if laws is None:
+        speed, acceleration = motion_rates(part.time, q)
+    else:
+        predicted = roll_out_arm(tree, laws, part.time, command, q[0], v0=v0, step=ROLLED, **signals)
+        speed, acceleration = sharpened_rates(part.time, q, predicted)
     stride = max(1, int(SLOPES / float(np.median(np.diff(part.time)))))
     mass, load, slope = measured_load(tree, q, speed, acceleration, stride)
-    ones = np.ones_like(q)
     return {
         "time": np.array(part.time),
         "command": command,
@@ -202,20 +220,8 @@ def _block(part: Recording, tree: KinematicTree, gain: float, voltage: float) ->
         "mass": mass,
         "load": load,
         "load_slope": slope,
-        "ratio": ones if part.voltage is None or not voltage else np.array(part.voltage) / voltage,
-        "gain": gain * ones,
-        "enabled": ones if part.enabled is None else np.array(part.enabled, dtype=float),
         "speed": speed,
-    }
-
-
-def motion_rates(time: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """v and a by local cubics over `SMOOTHING` seconds (Savitzky–Golay), each of shape (n, dof)."""
-    half = max(2, round(0.5 * SMOOTHING / float(np.median(np.diff(time)))))
-    length = min(2 * half + 1, len(time) - 1 + len(time) % 2)
-    samples = np.asarray(savgol_filter(time, length, 3, deriv=1))[:, None]
-    speed, acceleration = (np.asarray(savgol_filter(q, length, 3, deriv=order, axis=0)) for order in (1, 2))
-    return speed / samples, acceleration / samples**2
+    } | signals
 
 
 def is_a_servo_recording(recording: Any) -> bool:

@@ -23,12 +23,15 @@ from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of, without
 from lagnet.diagnosis.motion.joint.selection import (
     NEAR_NOMINAL,
+    NO_GAIN,
+    REMAINDER,
     WITHIN_INTERVAL,
     Rejected,
     refuted_by_load,
     relative_change,
 )
 from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.parameters import INDEX
 
 ITERATIONS = 6  # in each round: a fit joint by joint is near
@@ -108,6 +111,9 @@ def fit_named_laws(
     while nominal := {j: near for j, d in out.items() if (near := (*_near_nominal(d), *_refuted(d)))}:
         out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
+    out = _needed_beside_yielding(problem, fitted, laws, out)
+    if left := _unexplained(problem, fitted, laws, out):
+        out = _refitted(problem, fitted, laws, {j: _without(d, left.get(j, ())) for j, d in out.items()})
     out = _with_intervals(problem, fitted, laws, out)
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
@@ -162,6 +168,54 @@ def _with_intervals(
     for (joint, group), value, width in zip(rows, values, half, strict=True):
         ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
     return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
+
+
+def _needed_beside_yielding(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The diagnoses less names that the whole arm predicts as well without, where a transmission yields.
+
+    Joint by joint its neighbours are loaded by the motion that was measured; where that is the motor's and not the
+    link's they lack what the link does, and take it for a cause of their own.
+    """
+    out = dict(found)
+    names = sorted((c.gain, j, c.effect) for j, d in out.items() for c in d.comparisons)
+    if len(names) < 2 or not any(servo_effect(effect).chosen for _, _, effect in names):
+        return out
+    held, floors = ArmRuns(problem, runs_held_out(problem, fitted), tuple(out)), _floors(out)
+
+    def scores(diagnoses: Mapping[int, JointDiagnosis]) -> np.ndarray:
+        arm = _arm_of(problem, fitted, laws, diagnoses)
+        return held.scores(held.errors(laws if arm is None else arm.laws), floors)
+
+    for _, joint, effect in names[:-1]:
+        rejected = Rejected(effect, NO_GAIN, 0.0, out[joint].case.limits.gain)
+        fewer = _refitted(problem, fitted, laws, out | {joint: _without(out[joint], (rejected,))})
+        gain = advantage(scores(fewer), scores(out))[0]
+        if gain < out[joint].case.limits.gain:
+            kept = replace(fewer[joint], rejected=(*out[joint].rejected, replace(rejected, value=gain)))
+            out = fewer | {joint: kept}
+    return out
+
+
+def _unexplained(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, tuple[Rejected, ...]]:
+    """Names of joints at which all names together leave most of the error of given servos: then the cause is another.
+
+    The errors are those of held-out recordings, rolled out whole with all joints coupled.
+    """
+    held, named, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy(), laws.copy()
+    for joint, d in found.items():
+        named[joint], nominal[joint] = d.named_law, d.case.law
+    before, after = ([float(np.sqrt(np.mean(e**2))) for e in held.errors(x)] for x in (nominal, named))
+    out = {}
+    for (joint, d), was, is_ in zip(found.items(), before, after, strict=True):
+        limits = d.case.limits
+        limit = max(limits.remainder * was, limits.unexplained * d.case.floor)
+        if not d.case.base and d.named.effects and is_ > limit:
+            out[joint] = tuple(Rejected(e, REMAINDER, is_, limit) for e in d.named.effects)
+    return out
 
 
 def _near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:

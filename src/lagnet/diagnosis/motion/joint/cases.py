@@ -180,6 +180,8 @@ def rescaled(law: np.ndarray, factor: float) -> np.ndarray:
         "static",
         "offset",
         "spring",
+        "stiffness",
+        "twist_damping",
         "load_gain",
     ):
         out[INDEX[name]] *= factor if name != "load_gain" else 1.0

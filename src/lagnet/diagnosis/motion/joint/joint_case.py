@@ -83,6 +83,9 @@ def sizes_of(scales: Scales) -> dict[str, float]:
     return sizes | {
         "spring": 0.1 * scales.kp,
         "spring_rest": 0.2,
+        "stiffness": scales.kp,
+        "twist_damping": 0.02 * torque / speed,
+        "gap": 0.1 * scales.error,
         "stribeck_speed": 0.2 * speed,
         "torque_limit": torque,
     }

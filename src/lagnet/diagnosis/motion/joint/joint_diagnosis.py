@@ -14,7 +14,7 @@ from lagnet.diagnosis.motion.joint.joint_case import JointCase, sizes_of
 from lagnet.diagnosis.motion.joint.refitting import Selection, groups_of, refit
 from lagnet.diagnosis.motion.joint.rest import RestBand, rest_band
 from lagnet.diagnosis.motion.joint.rivals import Comparison, compare_rivals
-from lagnet.diagnosis.motion.joint.selection import Rejected, select, unless_unexplained
+from lagnet.diagnosis.motion.joint.selection import Rejected, select
 from lagnet.diagnosis.motion.problem import MotionProblem
 
 
@@ -63,9 +63,6 @@ def diagnose_joint(problem: MotionProblem, fitted: int, joint: int, case: JointC
     case = replace(case, law=nominal)
     chosen, rejected = select(case)
     chosen, comparisons = compare_rivals(case, chosen)
-    kept, dropped = unless_unexplained(case, chosen)
-    if dropped:
-        chosen, comparisons, rejected = kept, (), (*rejected, *dropped)
     data = replace(case.fit, windows=windows_to_fit(problem, fitted, joint))
     named = refit_to(case, chosen, data)
     scale = robust_scale(named.fitted.residual, case.floor)

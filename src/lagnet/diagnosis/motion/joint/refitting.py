@@ -41,7 +41,8 @@ def groups_of(case: JointCase, effects: Sequence[str]) -> list[tuple[str, ...]]:
     groups = list(case.base)
     for name in effects:
         law = servo_effect(name)
-        groups += [*law.frees, *((extra,) for extra in law.with_it)]
+        free = (group for group in law.frees if group[0] not in law.chosen)
+        groups += [*free, *((extra,) for extra in law.with_it)]
     return disjoint(groups)
 
 

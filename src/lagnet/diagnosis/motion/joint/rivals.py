@@ -54,7 +54,7 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
     scale = robust_scale(selected.fitted.residual, case.floor)
     bare = without(case, selected, effect, scale)
     gain, errors = advantage(bare.blocks, selected.blocks)
-    own = len(servo_effect(effect).parameters)
+    own = _freedom(effect)
     tied, best, better = [r for r in EQUIVALENT.get(effect, ()) if r not in selected.effects], None, None
     for rival in _rivals(case, selected, effect):
         tries = [refit(case, (*bare.effects, rival), start, scale) for start in starts_with(case, bare, rival)]
@@ -62,7 +62,7 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
         lead, lead_errors = advantage(found.blocks, selected.blocks)
         if best is None or lead < best[1]:
             best = (rival, lead, lead_errors)
-        if len(servo_effect(rival).parameters) > own or effect in servo_effect(rival).contains:
+        if _freedom(rival) > own or effect in servo_effect(rival).contains:
             continue
         if rival in servo_effect(effect).contains:  # as good with fewer parameters, or no rival at all
             if _needless(case, found, selected):
@@ -77,6 +77,12 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
                 better = simpler if better is None or simpler.blocks.mean() < better.blocks.mean() else better
     odds = None if best is None else log10_odds(best[2])
     return Comparison(effect, gain, errors, tuple(tied), None if best is None else best[0], odds), better
+
+
+def _freedom(effect: str) -> int:
+    """Parameters that an effect sets free."""
+    law = servo_effect(effect)
+    return len(law.parameters) + len(law.with_it)
 
 
 def _simpler(case: JointCase, selected: Selection, scale: float) -> Selection:

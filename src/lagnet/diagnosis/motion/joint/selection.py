@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.diagnosis.motion.joint.block_scores import advantage
-from lagnet.diagnosis.motion.joint.fitting import robust_scale
+from lagnet.diagnosis.motion.joint.fitting import Fitted, robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, friction_when_driven
@@ -22,7 +22,10 @@ from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 QUICK = 4  # iterations of the first fit of a candidate
 SHORT_LIST = 3  # candidates that are fitted to the end in every round
 MOST_EFFECTS = 10
+EQUAL = 0.005  # of scores: half the penalty of a parameter, so that no count of parameters is overruled
 WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
+NO_GAIN = "no_holdout_gain"  # rule: held-out motion is predicted as well without
+REMAINDER = "remainder"  # rule: with all names together most of the error remains
 NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
     "gain_error",
@@ -48,6 +51,11 @@ class Rejected:
 def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     """The effects of one joint, and those that were considered in the last round and not named."""
     selected = _first_selection(case)
+    if not case.base:
+        names = (*PLAIN, *(n for n in SERVO_CATALOGUE if n not in PLAIN))
+        alone = [_alone(case, name, selected.fitted.scale) for name in names if name in case.excited]
+        best = min(map(_penalised_score, (selected, *alone)))
+        selected = next(s for s in (selected, *alone) if _penalised_score(s) < best + EQUAL)  # plain ones first
     last: tuple[Rejected, ...] = ()
     while len(selected.effects) < MOST_EFFECTS:
         scale = robust_scale(selected.fitted.residual, case.floor)
@@ -59,18 +67,6 @@ def select(case: JointCase) -> tuple[Selection, tuple[Rejected, ...]]:
     return _backward(case, selected, last)
 
 
-def unless_unexplained(case: JointCase, chosen: Selection) -> tuple[Selection, tuple[Rejected, ...]]:
-    """The selection, or none where it leaves most of the error of a given servo: then the cause is another."""
-    if case.base or not chosen.effects:
-        return chosen, ()
-    before, after = (float(np.sqrt(np.mean(case.validation.errors(law) ** 2))) for law in (case.law, chosen.law))
-    limit = max(case.limits.remainder * before, case.limits.unexplained * case.floor)
-    if after <= limit:
-        return chosen, ()
-    scale = robust_scale(case.fit.errors(case.law), case.floor)
-    return refit(case, (), case.law, scale), tuple(Rejected(e, "remainder", after, limit) for e in chosen.effects)
-
-
 def _first_selection(case: JointCase) -> Selection:
     """All plain effects together, from the law of the equation error; backward elimination follows."""
     plain = tuple(n for n in PLAIN if n in case.excited)
@@ -80,6 +76,19 @@ def _first_selection(case: JointCase) -> Selection:
     scale = robust_scale(case.fit.errors(law), case.floor)
     selected = refit(case, plain, law, scale)
     return refit(case, plain, selected.law, robust_scale(selected.fitted.residual, case.floor))
+
+
+def _alone(case: JointCase, name: str, scale: float) -> Selection:
+    """One effect by itself, from the given law: what has another structure is not found from the plain effects' law.
+
+    Beside it stand those whose parameters it sets free, else it would be selected for what they gain.
+    """
+    beside = (n for n in case.excited if {g[0] for g in servo_effect(n).frees} <= set(servo_effect(name).with_it))
+    effects = (*beside, name)
+    start = Selection((), Fitted(case.law, np.inf, np.zeros(0), np.zeros((0, 0)), scale), np.zeros(0))
+    tries = [refit(case, effects, law, scale, QUICK) for law in starts_with(case, start, name)]
+    best = min(tries, key=lambda s: s.fitted.cost)
+    return refit(case, effects, best.law, scale)
 
 
 def _candidates(case: JointCase, selected: Selection) -> list[str]:
@@ -101,7 +110,7 @@ def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[
     for name, found in fitted:
         gain, errors = advantage(selected.blocks, found.blocks)
         if gain < case.limits.gain:
-            rejected.append(Rejected(name, "no_holdout_gain", gain, case.limits.gain))
+            rejected.append(Rejected(name, NO_GAIN, gain, case.limits.gain))
         elif errors < case.limits.errors:
             rejected.append(Rejected(name, "not_significant", errors, case.limits.errors))
         elif best is None or _penalised_score(found) < _penalised_score(best):
@@ -152,7 +161,7 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
     change = relative_change(case.law, selected.law, name)
     limits = case.limits
     for rule, value, limit in (
-        ("no_holdout_gain", gain, limits.gain),
+        (NO_GAIN, gain, limits.gain),
         ("not_significant", errors, limits.errors),
         ("below_resolution", difference, limits.steps * case.floor),
         (NEAR_NOMINAL, change, limits.change),

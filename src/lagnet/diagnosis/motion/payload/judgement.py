@@ -16,7 +16,7 @@ from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import refit
-from lagnet.diagnosis.motion.joint.selection import Rejected
+from lagnet.diagnosis.motion.joint.selection import REMAINDER, Rejected
 from lagnet.diagnosis.motion.payload.comparison import PayloadComparison, compare_payload
 from lagnet.diagnosis.motion.payload.fit import body_of
 from lagnet.diagnosis.motion.payload.found import PayloadFound
@@ -26,7 +26,6 @@ from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX
 
 ALIKE = frozenset({"load_error", "gain_error", "rotor_inertia", "joint_spring"})  # that one joint can take for a load
-REMAINDER = "remainder"
 
 
 def judge_payload(

@@ -1,0 +1,37 @@
+"""Complete laws of joints against their named laws, by rollouts of the whole arm."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.problem import MotionProblem
+
+
+def no_worse_than_named(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, JointDiagnosis]:
+    """The diagnoses, with the named law of a joint as its complete one where that predicts its held-out motion better.
+
+    A complete law is fitted joint by joint, under loads along the measured motion; a named one by the whole arm.
+
+    Args:
+        problem: all recordings, the first `fitted` of them fitted.
+        fitted: number of them.
+        laws: nominal, shape (dof, len(LAW)), for joints that do not move.
+        found: diagnoses of the joints that do.
+    """
+    complete, named = laws.copy(), laws.copy()
+    for joint, d in found.items():
+        complete[joint], named[joint] = d.law, d.named_law
+    if np.array_equal(complete, named):
+        return dict(found)
+    held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found))
+    floors = np.array([d.case.floor for d in found.values()])
+    scores = [np.split(held.scores(held.errors(x), floors), len(found)) for x in (complete, named)]
+    worse = [float(np.mean(c - n)) > 0.0 for c, n in zip(*scores, strict=True)]
+    return {j: replace(d, law=d.named_law) if w else d for (j, d), w in zip(found.items(), worse, strict=True)}
