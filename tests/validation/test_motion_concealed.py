@@ -32,9 +32,9 @@ def test_a_leg_that_hides_nothing_moves_as_its_nominal_model(tmp_path):
     assert np.sqrt(np.mean((q - recording.q) ** 2)) < 3.0 * ENCODER  # two integrators and nearly rigid friction
 
 
-def error_of_the_nominal_model(effect: str | None, folder: Path) -> float:
+def error_of_the_nominal_model(effect: str | None, folder: Path, index: int = 3) -> float:
     """Root mean square between a pendulum's recording and the nominal rollout [rad]."""
-    case = plant(3, 2, "pendulum", effect, SECONDS, folder)
+    case = plant(3, index, "pendulum", effect, SECONDS, folder)
     recording = case.recordings[0]
     nominal = ServoDrivenModel(case.robot, case.servo.laws, (True,))
     q = nominal.rollout(np.array(recording.command), recording.time, recording.q[0], step=0.001)

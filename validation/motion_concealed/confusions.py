@@ -15,7 +15,7 @@ from typing import Any
 
 from lagnet.diagnosis.verdict.verdict import EffectFound
 from validation.motion_concealed.causes import Cause
-from validation.motion_concealed.study import HERE, LONG, MOST_TIED, run, scored
+from validation.motion_concealed.study import HERE, LONG, MOST_TIED, run, scored, write_result
 
 FOUR = ("command_delay", "joint_elasticity", "backlash", "dead_band")
 KINDS = ("pendulum", "leg_bullet", "leg", "pendulum_bullet", "leg")
@@ -67,7 +67,9 @@ def main() -> int:
     plan = tuple(chain.from_iterable(repeat(effect, 2) for effect in FOUR))  # an encoder on either side
     plan = tuple(plan[i % len(plan)] for i in range(len(FOUR) * options.each))
     result = result_of(options.seed, run(plan, options.seed, LONG, KINDS, options.kept, outcome))
-    options.out.write_text(json.dumps(result, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+    write_result(options.out, result)
+    summary = {key: value for key, value in result.items() if key != "cases"}
+    write_result(HERE / "result.json", json.loads((HERE / "result.json").read_text("utf-8")) | {"confusions": summary})
     print(json.dumps(result["table"] | {"passed": result["passed"]}, indent=1))
     return 0 if all(result["passed"].values()) else 1
 

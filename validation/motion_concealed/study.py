@@ -145,9 +145,17 @@ def result_of(seed: int, cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "seed": seed,
         "figures": found,
         "found_by_cause": recalls,
+        "processor_seconds": round(sum(c.get("processor_seconds", 0.0) for c in cases), 1),
         "cases": list(cases),
         "passed": judge(found),
     }
+
+
+def write_result(path: Path, result: dict[str, Any]) -> None:
+    """Writes a result file; what another script keeps in it stays."""
+    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    kept = {key: value for key, value in before.items() if key == "confusions"}
+    path.write_text(json.dumps(kept | result, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def figures(cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -204,7 +212,7 @@ def main() -> int:
     else:
         plan = plan_of(options.seed, options.listed, options.empty, options.unlisted)
         result = result_of(options.seed, run(plan, options.seed, LONG, kept=options.kept))
-        options.out.write_text(json.dumps(result, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+        write_result(options.out, result)
     print(json.dumps(result["figures"] | {"passed": result["passed"]}, indent=1))
     return 0 if all(result["passed"].values()) else 1
 

@@ -1,4 +1,4 @@
-"""What smoothing takes from a start is given back where a rollout predicts it, and nothing where it predicts another."""
+"""What smoothing takes from a start is given back where a rollout predicts it, and where it does not, nothing."""
 
 from __future__ import annotations
 
