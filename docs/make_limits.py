@@ -3,8 +3,8 @@
 python docs/make_limits.py [--check]
 
 What a limit does at half and at twice its value is taken from `validation/ablations/limits.json`, where that study has
-measured it: {"whole": FIGURES, "limits": {"tie_odds": {"half": FIGURES, "twice": FIGURES}, "lack_of_fit.much": ...}},
-FIGURES being numbers by name. Columns without a figure are left out.
+measured it: {"tie_odds": {"half": {"simulated": {"whole": FIGURES, "changed": FIGURES}, "textured": ...}, "twice": …},
+"lack_of_fit.much": ...}, FIGURES being numbers by name. Columns without a figure are left out.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from marked_regions import DOCS, ROOT, replaced, write_or_check
 COMMAND = "python docs/make_limits.py"
 MEASURED = ROOT / "validation" / "ablations" / "limits.json"
 CHANGES = {"half": "at half", "twice": "at twice"}
+KINDS = {"simulated": "", "textured": "with the texture of real arms: "}
 FIGURES = {
     "precision": "precision",
     "recall": "recall",
@@ -63,23 +64,29 @@ def table(settings: Any, prefix: str, study: Mapping[str, Any]) -> str:
     Raises:
         ValueError: a limit has no meaning in the docstring of its class.
     """
-    said, limits = meanings(type(settings)), study.get("limits", {})
+    said = meanings(type(settings))
     rows = list(numbers(settings))
-    changes = [c for c in CHANGES if any(limits.get(prefix + n, {}).get(c) for n, _ in rows)]
+    changes = [c for c in CHANGES if any(study.get(prefix + n, {}).get(c) for n, _ in rows)]
     out = [["limit", "default", "meaning", *(CHANGES[c] for c in changes)], ["---"] * (3 + len(changes))]
     for name, value in rows:
         if not said.get(name):
             raise ValueError(f"{type(settings).__name__}.{name} has no meaning: describe it under Args")
-        figures = [difference(study["whole"], limits.get(prefix + name, {}).get(c)) for c in changes]
+        figures = [differences(study.get(prefix + name, {}).get(c)) for c in changes]
         out.append([f"`{name}`", f"{value:g}", said[name].replace("|", "\\|"), *figures])
     return "\n".join(f"| {' | '.join(row)} |" for row in out)
 
 
-def difference(whole: Mapping[str, float], other: Mapping[str, float] | None) -> str:
+def differences(change: Mapping[str, Any] | None) -> str:
+    """Figures that differ from those of the default, by kind of plant, with the number of plants."""
+    told = {kind: change[kind] for kind in KINDS if change and kind in change}
+    shown = [f"{KINDS[k]}{difference(f['whole'], f['changed'])} ({f['whole']['plants']})" for k, f in told.items()]
+    return "; ".join(shown) or "–"
+
+
+def difference(whole: Mapping[str, float], other: Mapping[str, float]) -> str:
     """Figures that differ from those of the default."""
-    if other is None:
-        return "–"
-    shown = {n: (f"{whole[n]:.3g}", f"{other[n]:.3g}") for n in FIGURES if n in whole and n in other}
+    known = [n for n in FIGURES if None not in (whole.get(n), other.get(n))]
+    shown = {n: (f"{whole[n]:.3g}", f"{other[n]:.3g}") for n in known}
     changed = [f"{FIGURES[n]} {before} → {after}" for n, (before, after) in shown.items() if before != after]
     return ", ".join(changed) or "no change"
 

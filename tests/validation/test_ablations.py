@@ -12,7 +12,7 @@ import pytest
 from scipy.signal import lfilter
 from tests.diagnosis.posed import pose
 from validation.ablations.patience import patience
-from validation.ablations.remembered import remembered
+from validation.ablations.remembered import Memory, remembered
 from validation.ablations.table import ABLATIONS, WITHOUT_RULE, ablation_named, names_of
 from validation.ablations.taken_out import import_all, taken_out, what_stands_at
 
@@ -157,7 +157,7 @@ def test_what_is_remembered_changes_no_word(arm, plant, at) -> None:
     real = plant(at(1, lambda q, v, a, t: 0.4 * v))
     fit, held = real.record(0), real.record(1)
     plain = diagnose([fit], arm, [held]).to_json()
-    with remembered():
+    with remembered(Memory()):
         assert [diagnose([fit], arm, [held]).to_json() for _ in range(2)] == [plain, plain]
         other = diagnose([held], arm, [fit]).to_json()
     assert other == diagnose([held], arm, [fit]).to_json()
