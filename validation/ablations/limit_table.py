@@ -43,12 +43,13 @@ def _shared() -> Iterator[Ablation]:
 
 
 def _of_rules() -> Iterator[Ablation]:
-    for rule in RULES:
+    rules: tuple[Any, ...] = RULES  # every one is a frozen dataclass
+    for rule in rules:
         for field, value in numbers_of(rule):
             limit = f"{rule.name}.{field}"
             for change, factor in FACTORS.items():
                 new = changed_value(limit, value, factor)
-                changed: Any = replace(rule, **{field: new})  # every rule is a frozen dataclass
+                changed = replace(rule, **{field: new})
                 yield Ablation(name_of(limit, change), f"{new:g} for {value:g}", changed=(changed,))
 
 
