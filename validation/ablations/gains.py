@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from validation.ablations.table import NOTHING, WITHOUT_RULE, WITHOUT_STEP, ablation_named, names_of
+from validation.ablations.table import NOTHING, WITHOUT_RULE, WITHOUT_STEP, names_of
 from validation.concealed.scoring import Score
 from validation.concealed.summary import FOUND, figures
 
@@ -46,24 +46,24 @@ class Told:
 
 
 @dataclass(frozen=True)
-class Row:
-    """One ablation.
+class Gain:
+    """What one ablation does on plants of one kind.
 
     Args:
-        name, instead_of: of the rule, and what the diagnosis does without it.
-        figures: without the rule.
+        figures, whole: without the rule or step, and of the whole diagnosis, on the same plants.
         bought: by how much each figure is better with the rule; coverage is better where it is nearer to 95 %.
         plants_better, plants_worse: where the rule changes the claims for the better, or for the worse.
         claims: of each plant whose claims are not those of the whole diagnosis.
+        unaffected: plants on which it had no effect in the whole diagnosis, so that nothing was run.
     """
 
-    name: str
-    instead_of: str
     figures: dict
+    whole: dict
     bought: dict[str, float]
     plants_better: int
     plants_worse: int
     claims: dict[str, list[str]]
+    unaffected: int
 
     @property
     def earns(self) -> bool:
@@ -74,20 +74,44 @@ class Row:
     def told(self) -> dict:
         """Plain values for the result file."""
         return {
-            "instead": self.instead_of,
-            "kind": kind_of(self.name),
             "figures": self.figures,
             "bought": self.bought,
             "earns_its_place": self.earns,
             "plants_better_with_it": self.plants_better,
             "plants_worse_with_it": self.plants_worse,
+            "plants_without_effect": self.unaffected,
             "claims_that_differ": self.claims,
         }
 
     def line(self) -> str:
         """One line of a table."""
         shown = " ".join("     -" if (x := self.figures[k]) is None else f"{x:6.3f}" for k in (*SHARES, *COUNTS))
-        return f"{self.name:74s} {shown}  better {self.plants_better}, worse {self.plants_worse} with it"
+        counts = f"{self.figures['plants']:3d} plants, {self.unaffected:3d} without effect"
+        return f"{shown} {counts}, better {self.plants_better}, worse {self.plants_worse} with it"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One ablation.
+
+    Args:
+        name, instead_of: of the rule, and what the diagnosis does without it.
+        kinds: what it does on plants of each kind.
+    """
+
+    name: str
+    instead_of: str
+    kinds: dict[str, Gain]
+
+    @property
+    def earns(self) -> bool:
+        """Whether it earns its place on plants of some kind."""
+        return any(gain.earns for gain in self.kinds.values())
+
+    def told(self) -> dict:
+        """Plain values for the result file."""
+        plain = {"instead": self.instead_of, "kind": kind_of(self.name), "earns_its_place": self.earns}
+        return plain | {kind: gain.told() for kind, gain in self.kinds.items()}
 
 
 def kind_of(name: str) -> str:
@@ -96,29 +120,31 @@ def kind_of(name: str) -> str:
     return next((kind for kind, own in kinds.items() if name in names_of(own)), "several")
 
 
-def rule_rows(told: Mapping[str, Sequence[Told]]) -> list[Row]:
-    """The whole diagnosis first, then each ablation against it."""
-    whole = next(iter(told.values()))
-    return [_row(name, one, whole) for name, one in told.items()]
+def gain_of(pairs: Sequence[tuple[Told, Told]], unaffected: int) -> Gain:
+    """What an ablation does on some plants.
 
-
-def _row(name: str, told: Sequence[Told], told_by_all: Sequence[Told]) -> Row:
-    without, whole = ([t.score for t in each] for each in (told, told_by_all))
-    found, full = figures(without), figures(whole)
-    empty = [t.mismatch for t in told if t.score.group == "empty"]
-    alarms = {"mismatch_told_where_nothing_is_hidden": sum(empty), "plants_with_nothing_hidden": len(empty)}
-    kept = {k: found[k] for k in (*SHARES, *COUNTS, *BESIDE)} | alarms
-    pairs = list(zip(whole, without, strict=True))
-    values = [(_value(a), _value(b)) for a, b in pairs]
-    return Row(
-        name,
-        ablation_named(name).instead_of,
-        kept,
+    Args:
+        pairs: the whole diagnosis and that under the ablation, of each plant.
+        unaffected: how many of these were not run, since nothing of it had an effect.
+    """
+    whole, without = ([t.score for t in each] for each in zip(*pairs, strict=True))
+    full, found = figures(whole), figures(without)
+    values = [(_value(a.score), _value(b.score)) for a, b in pairs]
+    return Gain(
+        _kept(found, [b for _, b in pairs]),
+        _kept(full, [a for a, _ in pairs]),
         {k: _gain(k, full[k], found[k]) for k in (*SHARES, *COUNTS) if None not in (full[k], found[k])},
         sum(a > b for a, b in values),
         sum(a < b for a, b in values),
-        {b.plant: _told(b) for a, b in pairs if _told(a) != _told(b)},
+        {b.plant: _told(b) for a, b in zip(whole, without, strict=True) if _told(a) != _told(b)},
+        unaffected,
     )
+
+
+def _kept(found: dict, told: Sequence[Told]) -> dict:
+    empty = [t.mismatch for t in told if t.score.group == "empty"]
+    alarms = {"mismatch_told_where_nothing_is_hidden": sum(empty), "plants_with_nothing_hidden": len(empty)}
+    return {k: found[k] for k in (*SHARES, *COUNTS, *BESIDE)} | alarms
 
 
 def _gain(figure: str, whole: float, without: float) -> float:

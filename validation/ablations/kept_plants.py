@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,8 +37,12 @@ class KeptPlant:
         return robot, [lagnet.load_recording(file, robot=robot) for file in files]
 
 
-def keep(seed: int, number: int, home: Path) -> KeptPlant:
-    """The plant of that seed and number: read if it lies in `home`, else simulated into it.
+Disturbed = Callable[[Plan, Path, Witness], Witness]
+"""Changes the recordings of a plant in a folder, and gives back what they show of each cause then."""
+
+
+def keep(seed: int, number: int, home: Path, disturbed: Disturbed | None = None) -> KeptPlant:
+    """The plant of that seed and number: read if it lies in `home`, else simulated (and disturbed) into it.
 
     Raises:
         RuntimeError: the plant's closed loop was lost.
@@ -49,8 +54,14 @@ def keep(seed: int, number: int, home: Path) -> KeptPlant:
         with tempfile.TemporaryDirectory(dir=folder.parent) as unfinished:
             fresh = Path(unfinished) / "plant"
             witness, _ = simulate(plan, fresh)
+            witness = witness if disturbed is None else disturbed(plan, fresh, witness)
             (fresh / TRUTH).write_bytes(plan.sealed())
             (fresh / WITNESS).write_bytes(witness.to_json())
             fresh.rename(folder)
+    return opened_plant(folder)
+
+
+def opened_plant(folder: Path) -> KeptPlant:
+    """A plant that lies in a folder."""
     plan = opened((folder / TRUTH).read_bytes())
     return KeptPlant(plan, read_witness((folder / WITNESS).read_bytes()), folder)

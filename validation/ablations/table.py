@@ -21,19 +21,22 @@ class Ablation:
         instead_of: what the diagnosis does then, in words.
         less: names of rules that are left out.
         instead: what stands in the places of a step that is no rule and has no parameter.
-        limits: those of the diagnosis, with the step's own out of reach.
+        changed: rules with another limit, in the places of those of the same names.
+        limits: of the diagnosis, where they are not the defaults.
     """
 
     name: str
     instead_of: str
     less: frozenset[str] = frozenset()
     instead: Instead = field(default_factory=dict)
-    limits: DecisionLimits = field(default_factory=DecisionLimits)
+    changed: tuple[RejectionRule, ...] = ()
+    limits: DecisionLimits | None = None
 
     @property
     def rules(self) -> tuple[RejectionRule, ...]:
         """The rules that stay."""
-        return tuple(r for r in RULES if r.name not in self.less)
+        changed = {r.name: r for r in self.changed}
+        return tuple(changed.get(r.name, r) for r in RULES if r.name not in self.less)
 
 
 NOTHING = Ablation("nothing", "the diagnosis as it is")
@@ -107,7 +110,7 @@ WITHOUT_STEP = (
     Ablation(
         "ambiguity",
         "a cause that could be any of many is named",
-        limits=DecisionLimits(most_names=10**6),
+        instead={"lagnet.diagnosis.identifiability.ambiguity:ambiguous_causes": neutral.value({})},
     ),
     Ablation(
         "joint refit",
