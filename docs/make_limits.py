@@ -3,8 +3,7 @@
 python docs/make_limits.py [--check]
 
 What a limit does at half and at twice its value is taken from `validation/ablations/limits.json`, where that study has
-measured it: {"tie_odds": {"half": {"simulated": {"whole": FIGURES, "changed": FIGURES}, "textured": ...}, "twice": …},
-"lack_of_fit.much": ...}, FIGURES being numbers by name. Columns without a figure are left out.
+measured it on plants of each kind. Columns without a figure are left out.
 """
 
 from __future__ import annotations
@@ -71,24 +70,29 @@ def table(settings: Any, prefix: str, study: Mapping[str, Any]) -> str:
     for name, value in rows:
         if not said.get(name):
             raise ValueError(f"{type(settings).__name__}.{name} has no meaning: describe it under Args")
-        figures = [differences(study.get(prefix + name, {}).get(c)) for c in changes]
+        figures = [change_words(study.get(prefix + name, {}).get(c)) for c in changes]
         out.append([f"`{name}`", f"{value:g}", said[name].replace("|", "\\|"), *figures])
     return "\n".join(f"| {' | '.join(row)} |" for row in out)
 
 
-def differences(change: Mapping[str, Any] | None) -> str:
-    """Figures that differ from those of the default, by kind of plant, with the number of plants."""
-    told = {kind: change[kind] for kind in KINDS if change and kind in change}
-    shown = [f"{KINDS[k]}{difference(f['whole'], f['changed'])} ({f['whole']['plants']})" for k, f in told.items()]
-    return "; ".join(shown) or "–"
+def change_words(change: Mapping[str, Any] | None) -> str:
+    """What a changed limit does on plants of each kind."""
+    if change is None:
+        return "–"
+    kinds = {kind: told for kind, told in change.items() if isinstance(told, Mapping)}
+    return "; ".join(f"{kind}: {difference(told['whole'], told['changed'])}" for kind, told in kinds.items())
 
 
-def difference(whole: Mapping[str, float], other: Mapping[str, float]) -> str:
-    """Figures that differ from those of the default."""
-    known = [n for n in FIGURES if None not in (whole.get(n), other.get(n))]
-    shown = {n: (f"{whole[n]:.3g}", f"{other[n]:.3g}") for n in known}
+def difference(whole: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+    """Figures that differ from those of the default, on the same plants."""
+    shown = {n: (number(whole[n]), number(other[n])) for n in FIGURES}
     changed = [f"{FIGURES[n]} {before} → {after}" for n, (before, after) in shown.items() if before != after]
-    return ", ".join(changed) or "no change"
+    return f"{', '.join(changed) or 'no change'} ({whole['plants']} plants)"
+
+
+def number(x: float | None) -> str:
+    """Three digits; a dash where nothing is counted."""
+    return "–" if x is None else f"{x:.3g}"
 
 
 def section(rule: RejectionRule, study: Mapping[str, Any]) -> str:

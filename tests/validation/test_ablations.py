@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 from tests.diagnosis.posed import pose
+from validation.ablations.answers import without_limits
+from validation.ablations.limit_table import LIMITS_OF_RULES, SHARED_LIMITS
 from validation.ablations.patience import patience
 from validation.ablations.remembered import Memory, remembered
 from validation.ablations.table import ABLATIONS, WITHOUT_RULE, ablation_named, names_of
 from validation.ablations.taken_out import import_all, taken_out, what_stands_at
+from validation.ablations.watched import WATCHED, Effects, watched_places, watched_rules
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.rules.apply import apply_rules
 from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.diagnosis.settings import DecisionLimits
 
 pytestmark = pytest.mark.slow
 
@@ -161,6 +165,50 @@ def test_what_is_remembered_changes_no_word(arm, plant, at) -> None:
         assert [diagnose([fit], arm, [held]).to_json() for _ in range(2)] == [plain, plain]
         other = diagnose([held], arm, [fit]).to_json()
     assert other == diagnose([held], arm, [fit]).to_json()
+
+
+def test_what_is_remembered_hangs_on_no_limit(arm, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: friction(v)))
+    fit, held = real.record(0), real.record(1)
+    limits = DecisionLimits(tie_odds=0.0, same_error=0.0)
+    apart = diagnose([fit], arm, [held], limits=limits).to_json()
+    with remembered(Memory()):
+        assert diagnose([fit], arm, [held]).to_json() != apart
+        assert diagnose([fit], arm, [held], limits=limits).to_json() == apart
+
+
+def test_every_limit_is_halved_and_doubled() -> None:
+    assert len(SHARED_LIMITS) == 2 * len(fields(DecisionLimits))
+    for half, twice in zip(SHARED_LIMITS[::2], SHARED_LIMITS[1::2], strict=True):
+        name = half.name.removesuffix(" at half")
+        values = [getattr(x, name) for x in (half.limits, DecisionLimits(), twice.limits)]
+        assert values == sorted(values)
+        assert len(set(values)) == 3
+    for ablation in LIMITS_OF_RULES:
+        (changed,) = ablation.changed
+        assert [r.name for r in ablation.rules] == [r.name for r in RULES]
+        assert changed in ablation.rules
+        assert changed not in RULES
+
+
+def test_what_has_no_effect_is_told_from_what_has(arm, plant, at) -> None:
+    real = plant(at(1, lambda q, v, a, t: 0.4 * v * (1.0 + np.sin(3.0 * q))))
+    fit, held = real.record(1), real.record(51)
+    watched, seen = (*ABLATIONS, *LIMITS_OF_RULES), Effects()
+    with taken_out(watched_places(watched, seen)):
+        whole = diagnose([fit], arm, [held], rules=watched_rules(RULES, watched, seen))
+    assert whole.to_json() == diagnose([fit], arm, [held]).to_json()
+    assert "lack_of_fit" in seen.rules
+    idle = [a for a in (*WITHOUT_RULE, *LIMITS_OF_RULES) if not seen.of(a)]
+    assert idle
+    for ablation in idle[::6]:
+        again = diagnose([fit], arm, [held], rules=ablation.rules).verdict.to_dict()
+        assert without_limits(again) == without_limits(whole.verdict.to_dict())
+    assert seen.of(ablation_named("lack_of_fit"))
+
+
+def test_every_watched_place_is_one_of_a_step() -> None:
+    assert {place for a in ABLATIONS for place in a.instead} >= WATCHED
 
 
 def test_what_comes_to_no_end_is_ended() -> None:

@@ -92,8 +92,15 @@ def file_of(home: Path, ablation: Ablation) -> Path:
 
 
 def same_verdict(one: dict, other: dict) -> bool:
-    """Whether two answers are one verdict, to the last digit."""
-    return one["verdict"] is not None and one["verdict"] == other["verdict"]
+    """Whether two answers are one verdict, to the last digit, but for the limits that they tell."""
+    pair = [x["verdict"] for x in (one, other)]
+    return None not in pair and without_limits(pair[0]) == without_limits(pair[1])
+
+
+def without_limits(verdict: dict) -> dict:
+    """All that was decided; a rejection without the limit that decided it and the words on that."""
+    rejected = [{k: v for k, v in r.items() if k not in ("value", "limit", "detail")} for r in verdict["rejected"]]
+    return {k: v for k, v in verdict.items() if k != "limits"} | {"rejected": rejected}
 
 
 def _write(file: Path, content: dict) -> None:

@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 PANELS = {
     "precision": "precision",
@@ -25,31 +26,32 @@ PANELS = {
 }
 
 
+COLOURS = {"simulated": "tab:blue", "textured": "tab:red"}
+
+
 def draw(result: Path, picture: Path) -> None:
     """Draw a result.json."""
     rules = json.loads(result.read_text())["rules"]
     figure, panels = plt.subplots(1, len(PANELS), figsize=(17.5, 0.9 + 0.38 * len(rules)), sharey=True)
     for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
-        _panel(axes, {rule: row["figures"][name] for rule, row in rules.items()})
+        for kind, colour in COLOURS.items():
+            _dots(axes, [row[kind]["figures"][name] if kind in row else None for row in rules.values()], colour)
         axes.set_title(title, fontsize=9)
+        axes.margins(x=0.35)
+        axes.grid(axis="y", alpha=0.3)
     labels = ["whole diagnosis", *(f"without: {fill(rule.replace('_', ' '), 40)}" for rule in list(rules)[1:])]
     panels[0].set_yticks(range(len(rules)), labels)
     panels[0].invert_yaxis()
+    figure.legend([Line2D([], [], color=c, marker="o", ls="") for c in COLOURS.values()], COLOURS, loc="upper left")
     figure.tight_layout()
     figure.savefig(picture, dpi=110)
     plt.close(figure)
 
 
-def _panel(axes: Axes, values: dict[str, float | None]) -> None:
+def _dots(axes: Axes, values: list[float | None], colour: str) -> None:
     """Dots, and a line at the value of the whole diagnosis."""
-    whole = next(iter(values.values()))
-    if whole is not None:
-        axes.axvline(whole, color="gray", linewidth=0.8)
-    for row, value in enumerate(values.values()):
-        if value is not None:
-            axes.plot([value], [row], "o", color="black" if row == 0 else "tab:red", clip_on=False, zorder=3)
-            axes.annotate(f"{value:.3g}", (value, row), (4, 4), textcoords="offset points", fontsize=7)
-    axes.margins(x=0.35)
-    if not any(values.values()):
-        axes.set_xlim(-0.2, 1.0)
-    axes.grid(axis="y", alpha=0.3)
+    if values[0] is not None:
+        axes.axvline(values[0], color=colour, linewidth=0.6, alpha=0.6)
+    known = [(value, row) for row, value in enumerate(values) if value is not None]
+    if known:
+        axes.plot(*zip(*known, strict=True), "o", color=colour, markersize=4, clip_on=False, zorder=3)

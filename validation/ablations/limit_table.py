@@ -43,14 +43,14 @@ def _shared() -> Iterator[Ablation]:
 
 
 def _of_rules() -> Iterator[Ablation]:
-    rules: tuple[Any, ...] = RULES  # every one is a frozen dataclass
-    for rule in rules:
+    for rule in RULES:
+        plain: Any = rule  # every rule is a frozen dataclass
         for field, value in numbers_of(rule):
             limit = f"{rule.name}.{field}"
             for change, factor in FACTORS.items():
                 new = changed_value(limit, value, factor)
-                changed = replace(rule, **{field: new})
-                yield Ablation(name_of(limit, change), f"{new:g} for {value:g}", changed=(changed,))
+                changed = (replace(plain, **{field: new}),)
+                yield Ablation(name_of(limit, change), f"{new:g} for {value:g}", changed=changed)
 
 
 SHARED_LIMITS = tuple(_shared())
