@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from validation.ablations.answers import same_verdict
 from validation.ablations.content import Contents
 from validation.ablations.limit_table import LIMITS_OF_RULES, RATIOS, SHARED_LIMITS, changed_value
 from validation.ablations.table import ABLATIONS, NOTHING, WITHOUT_RULE
@@ -77,8 +76,3 @@ def test_every_limit_is_halved_and_doubled() -> None:
     assert changed_value("tie_odds", 1.3, 0.5) == 0.65
     assert changed_value("above_noise", 1.25, 2.0) == 1.5
     assert changed_value("most_names", 4, 0.5) == 2
-
-
-def test_no_verdict_is_no_verdict_twice() -> None:
-    assert not same_verdict({"verdict": None}, {"verdict": None})
-    assert same_verdict({"verdict": {"a": 1}}, {"verdict": {"a": 1}})
