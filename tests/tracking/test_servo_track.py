@@ -235,9 +235,10 @@ def test_recordings_of_two_kinds_are_told(bench):
 
 
 def test_laws_of_both_catalogues_are_known():
-    owners = (owner_of("viscous", ()), owner_of("coulomb", ("stribeck_friction",)))
-    assert [(o[0], o[1].name) for o in owners if o] == [("viscous_friction", "Fv"), ("stribeck_friction", "Fc")]
-    assert owner_of("stiffness", ()) is None
+    owners = (owner_of("viscous", ()), owner_of("coulomb", ("stribeck_friction",)), owner_of("stiffness", ()))
+    expected = [("viscous_friction", "Fv"), ("stribeck_friction", "Fc"), ("joint_elasticity", "K")]
+    assert [(o[0], o[1].name) for o in owners if o] == expected
+    assert owner_of("voltage_share", ()) is None
     assert [stage_of(e) for e in ("payload", "static_friction", "dead_band")] == ["body", "torque", "signal"]
     assert lower_bound("static_friction", "Fs/kp") == 0.0
     assert lower_bound("torque_offset", "b") == -np.inf

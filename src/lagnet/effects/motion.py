@@ -10,6 +10,7 @@ import numpy as np
 
 from lagnet.effects.rest import blurred_sign, held_direction
 from lagnet.rigid_body.inertia import is_physically_consistent
+from lagnet.rigid_body.robot import Robot
 from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
 
 
@@ -88,13 +89,21 @@ class Motion:
         Where the regressor is not known yet, Newton–Euler of an arm that has this body alone: a tenth of the time. A
         change that is no real body has its regressor alone.
         """
-        without_rotors = None if "links" in self.cache else getattr(self.model, "with_armature", None)
-        if without_rotors is None or not is_physically_consistent(parameters):
+        alone = None if "links" in self.cache else self.body_alone(joint, parameters)
+        if alone is None:
             return np.asarray(self.link_regressor(joint) @ parameters)
+        return alone.inverse_dynamics(self.q, self.v, self.a)
+
+    def body_alone(self, joint: int, parameters: np.ndarray) -> Robot | None:
+        """The arm with one body behind a joint and no other, without rotors.
+
+        None where the change is no real body, or the model holds more than bodies, as a corrected one does.
+        """
+        if not isinstance(self.model, Robot) or not is_physically_consistent(parameters):
+            return None
         bodies = np.zeros((self.n_dof, 10))
         bodies[joint] = parameters
-        alone = without_rotors(np.zeros(self.n_dof)).with_inertial_parameters(bodies)
-        return alone.inverse_dynamics(self.q, self.v, self.a)
+        return self.model.with_armature(np.zeros(self.n_dof)).with_inertial_parameters(bodies)
 
     def remembered(self, key: Hashable, make: Any) -> Any:
         """The value of `make()`, kept for the other effects that ask for the same key."""

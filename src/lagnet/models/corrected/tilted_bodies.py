@@ -10,8 +10,6 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.gravity_tilt import GravityTilt, is_large
 from lagnet.effects.motion import Motion
-from lagnet.rigid_body.inertia import is_physically_consistent
-from lagnet.types import is_robot_model
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
 TILT_LAW = GravityTilt()
@@ -104,12 +102,10 @@ def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     """Holding torque of a payload or link change in a field of gravity, shape (n, dof) [N m]."""
     link = motion.n_dof - 1 if body.joint is None else body.joint
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
-    known = f"weights_{link}" in motion.cache or not is_robot_model(motion.model)
-    if not known and is_physically_consistent(weights):  # Newton–Euler at rest of an arm that has this body alone
-        bodies, still = np.zeros((motion.n_dof, 10)), np.zeros_like(motion.q)
-        bodies[link] = weights
-        alone = motion.robot.with_gravity(gravity).with_inertial_parameters(bodies)
-        return alone.inverse_dynamics(motion.q, still, still)
+    alone = None if f"weights_{link}" in motion.cache else motion.body_alone(link, weights)
+    if alone is not None:  # Newton–Euler at rest
+        still = np.zeros_like(motion.q)
+        return alone.with_gravity(gravity).inverse_dynamics(motion.q, still, still)
     field = np.tensordot(gravity, fields_of(motion, link), 1)
     return (field.reshape(-1, weights.size) @ weights).reshape(field.shape[:-1])
 
