@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.servos.parameters import GAP, STIFFNESS
 
 
 def no_worse_than_named(
@@ -17,7 +18,8 @@ def no_worse_than_named(
 ) -> dict[int, JointDiagnosis]:
     """The diagnoses, with the named law of a joint as its complete one where that predicts its held-out motion better.
 
-    A complete law is fitted joint by joint, under loads along the measured motion; a named one by the whole arm.
+    A complete law is fitted joint by joint, under loads along the measured motion; a named one by the whole arm. Where
+    one rigid joint moves alone both are the same rollouts, between which its own diagnosis has decided already.
 
     Args:
         problem: all recordings, the first `fitted` of them fitted.
@@ -28,7 +30,8 @@ def no_worse_than_named(
     complete, named = laws.copy(), laws.copy()
     for joint, d in found.items():
         complete[joint], named[joint] = d.law, d.named_law
-    if np.array_equal(complete, named):
+    alone = len(found) == 1 and not named[:, [STIFFNESS, GAP]].any()
+    if alone or np.array_equal(complete, named):
         return dict(found)
     held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found))
     floors = np.array([d.case.floor for d in found.values()])
