@@ -74,7 +74,7 @@ def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> D
 def is_puzzled(state: DiagnosisState) -> bool:
     """Whether some joint has a large residual share, clearly above the noise."""
     limits = (CLEARLY * state.noise) ** 2
-    left = zip(state.remainders, limits, strict=True)
+    left = zip(state.sizes, limits, strict=True)
     return any(joint.above and joint.share > PUZZLING and joint.power > limit for joint, limit in left)
 
 
@@ -140,7 +140,7 @@ def _clock_gain(first: DiagnosisState, second: DiagnosisState, joints: list[int]
     """½ Σ_j n_j / g_j ln(E_first / E_second) [nats] on held-out motion, over joints without a delay."""
     samples = first.holdout_equations.samples / first.selection.scales.inefficiency
     before, after = (
-        np.maximum([left.power for left in one.remainders], np.maximum(first.noise, 1e-12) ** 2 / 4)
+        np.maximum([left.power for left in one.sizes], np.maximum(first.noise, 1e-12) ** 2 / 4)
         for one in (first, second)
     )
     return float(0.5 * np.sum((samples * np.log(before / after))[joints]))

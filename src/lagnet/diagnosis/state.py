@@ -20,7 +20,14 @@ from lagnet.diagnosis.selection.arm_search import Selection
 from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.diagnosis.unexplained.friction_drift import Drift, find_drifts
-from lagnet.diagnosis.unexplained.remainder import JointRemainder, Remainder, joint_remainders, remainder_of
+from lagnet.diagnosis.unexplained.remainder import (
+    JointRemainder,
+    Remainder,
+    RemainderSize,
+    joint_remainders,
+    remainder_of,
+    remainder_sizes,
+)
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import Conditioned
@@ -82,9 +89,14 @@ class DiagnosisState:
         return remainder_of(self.judged or self.problem, self.effects)
 
     @cached_property
+    def sizes(self) -> tuple[RemainderSize, ...]:
+        """How much remains at each joint."""
+        return remainder_sizes(self.problem, self.after, self.noise)
+
+    @cached_property
     def remainders(self) -> tuple[JointRemainder, ...]:
         """The remainder of each joint: power, residual share and predictable share."""
-        return joint_remainders(self.problem, self.after, self.noise, self.seed)
+        return joint_remainders(self.problem, self.after, self.sizes, self.noise, self.seed)
 
     @cached_property
     def identified(self) -> Identified | None:
@@ -94,7 +106,7 @@ class DiagnosisState:
     @property
     def missed(self) -> np.ndarray:
         """√max(mean r² − σ², 0) on held-out motion: error of the corrected model beyond noise, shape (dof,) [N m]."""
-        power = np.array([joint.power for joint in self.remainders])
+        power = np.array([joint.power for joint in self.sizes])
         return np.sqrt(np.maximum(power - self.noise**2, 0.0))
 
     @property

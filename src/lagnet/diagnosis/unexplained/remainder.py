@@ -31,21 +31,34 @@ class Remainder:
     unseen: Signals
 
 
+@dataclass(frozen=True)
+class RemainderSize:
+    """How much of one joint's torque remains.
+
+    Args:
+        above: whether it exceeds the noise, on held-out motion or, if not there, on the fitted one.
+        power: mean square on held-out samples [N² m²].
+        fitted: mean square on fitted samples [N² m²].
+        share: of the joint's mismatch beyond the noise that is left, on the motion where it exceeds it, 0 to 1.
+    """
+
+    above: bool
+    power: float
+    fitted: float
+    share: float
+
+
 @dataclass(frozen=True, eq=False)
 class JointRemainder:
     """The remainder of one joint.
 
     Args:
-        above: whether it exceeds the noise, on held-out motion or, if not there, on the fitted one.
-        power: mean square on held-out samples [N² m²].
-        share: of the joint's mismatch beyond the noise that is left, on the motion where it exceeds it, 0 to 1.
+        size: how much it is.
         ceiling: how much of it any smooth function predicts; nothing where it is noise.
         shape: how it looks against its strongest signal; None where it is noise or nothing predicts it.
     """
 
-    above: bool
-    power: float
-    share: float
+    size: RemainderSize
     ceiling: Predictability
     shape: RemainderShape | None
 
@@ -62,27 +75,51 @@ def remainder_of(problem: Problem, effects: Sequence[NamedEffect]) -> Remainder:
     return Remainder(parts[0], parts[1], seen, unseen)
 
 
-def joint_remainders(problem: Problem, after: Remainder, noise: np.ndarray, seed: int) -> tuple[JointRemainder, ...]:
-    """The remainder of each joint.
+def remainder_sizes(problem: Problem, after: Remainder, noise: np.ndarray) -> tuple[RemainderSize, ...]:
+    """How much remains at each joint.
 
     Args:
         noise: shape (dof,), noise floor [N m].
     """
-    return tuple(_joint(problem, after, float(noise[j]), seed, j) for j in range(problem.n_dof))
+    nominal = {part: stacked(problem, pieces) for part, pieces in (("holdout", problem.holdout), ("fit", problem.fit))}
+    return tuple(_size(problem, after, nominal, float(noise[j]), j) for j in range(problem.n_dof))
 
 
-def _joint(problem: Problem, after: Remainder, noise: float, seed: int, joint: int) -> JointRemainder:
+def _size(problem: Problem, after: Remainder, nominal: dict, noise: float, joint: int) -> RemainderSize:
     power, fitted = power_of(*after.holdout, joint), power_of(*after.fit, joint)
     limit = (problem.limits.above_noise * noise) ** 2
     if max(power, fitted) <= limit:
-        return JointRemainder(False, power, 0.0, Predictability(0.0, ()), None)
-    pieces, there = (problem.holdout, power) if power > limit else (problem.fit, fitted)
-    looks = _look_at(after, joint, problem.slow, seed) if power > limit else (Predictability(0.0, ()), None)
-    if not looks[0].depends_on and fitted > limit:  # held-out motion may be too short, or too unlike, to learn it for
-        looks = _look_at(_within_fit(after), joint, problem.slow, seed)
-    before = power_of(*stacked(problem, pieces), joint)
+        return RemainderSize(False, power, fitted, 0.0)
+    part, there = ("holdout", power) if power > limit else ("fit", fitted)
+    before = power_of(*nominal[part], joint)
     share = float(np.clip(max(0.0, there - noise**2) / max(before - noise**2, 1e-300), 0.0, 1.0))
-    return JointRemainder(True, power, share, *looks)
+    return RemainderSize(True, power, fitted, share)
+
+
+def joint_remainders(
+    problem: Problem, after: Remainder, sizes: Sequence[RemainderSize], noise: np.ndarray, seed: int
+) -> tuple[JointRemainder, ...]:
+    """The remainder of each joint, and what predicts it.
+
+    Args:
+        noise: shape (dof,), noise floor [N m].
+    """
+    limits = (problem.limits.above_noise * noise) ** 2
+    looks = (_look(problem, after, size, float(limits[j]), seed, j) for j, size in enumerate(sizes))
+    return tuple(JointRemainder(size, *look) for size, look in zip(sizes, looks, strict=True))
+
+
+def _look(
+    problem: Problem, after: Remainder, size: RemainderSize, limit: float, seed: int, joint: int
+) -> tuple[Predictability, RemainderShape | None]:
+    looks = (Predictability(0.0, ()), None)
+    if size.power > limit:
+        looks = _look_at(after, joint, problem.slow, seed)
+    if (
+        not looks[0].depends_on and size.fitted > limit
+    ):  # held-out motion may be too short, or too unlike, to learn it for
+        looks = _look_at(_within_fit(after), joint, problem.slow, seed)
+    return looks
 
 
 def _within_fit(after: Remainder) -> Remainder:

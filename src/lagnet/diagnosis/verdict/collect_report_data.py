@@ -105,7 +105,7 @@ def _joint(
         residual=ResidualByVelocity(v, measured - nominal, measured - tau_corrected),
         law=_law(state, joint),
         noise_rms=float(state.noise[joint]),
-        ceiling_share=remainder.ceiling.share if remainder.above else None,
+        ceiling_share=remainder.ceiling.share if remainder.size.above else None,
         leftover=remainder.shape,
     )
 

@@ -146,16 +146,16 @@ def _effect(state: DiagnosisState, n: int, comparison: Comparison, evidence: Eff
 def _unexplained(state: DiagnosisState, joint: int) -> Unexplained:
     problem, remainder = state.problem, state.remainders[joint]
     depends_on = remainder.ceiling.depends_on
-    if remainder.above and "time" not in depends_on and changes_in_time(state, joint):
+    if remainder.size.above and "time" not in depends_on and changes_in_time(state, joint):
         depends_on = ("time", *depends_on)
     formula = remainder.shape.formula if remainder.shape else None
-    return Unexplained(problem.joints[joint], remainder.above, remainder.share, depends_on, formula)
+    return Unexplained(problem.joints[joint], remainder.size.above, remainder.size.share, depends_on, formula)
 
 
 def _fit(state: DiagnosisState, joint: int) -> JointFit:
     problem = state.problem
     variance = float(problem.unseen_variance[joint])
-    nominal, named = power_of(*stacked(problem, problem.holdout), joint), state.remainders[joint].power
+    nominal, named = power_of(*stacked(problem, problem.holdout), joint), state.sizes[joint].power
     floor = float(state.noise[joint] ** 2) / variance
     return JointFit(problem.joints[joint], nominal / variance, named / variance, None, floor)
 
