@@ -16,6 +16,7 @@ import numpy as np
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import stacked
+from lagnet.diagnosis.regression.library import of_motion_alone
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.effects.catalogue import effect_named
@@ -107,7 +108,9 @@ def with_nominal(problem: Problem, nominal: InverseDynamics) -> Problem:
         return problem
 
     def posed(piece: Segment) -> Segment:
-        return replace(piece, load=torque_along(nominal, piece.time, piece.q, piece.v, piece.a))
+        against = replace(piece, load=torque_along(nominal, piece.time, piece.q, piece.v, piece.a))
+        against.columns.update(of_motion_alone(piece.columns))
+        return against
 
     fit, holdout = tuple(map(posed, problem.fit)), tuple(map(posed, problem.holdout))
     return replace(problem, nominal=nominal, fit=fit, holdout=holdout, known=())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -191,6 +191,8 @@ class Library:
     def _follows_from(self, problem: Problem, index: int) -> Hashable:
         """What the columns of a hypothesis follow from, on a given piece."""
         h = self.hypotheses[index]
+        if _is_of_motion_alone(h.law) and h.joint is not None:
+            return h, _sign_model(problem, h.joint)
         sign = tuple(None if x is None else x.tobytes() for x in (problem.slow, problem.straight, problem.held))
         known = problem.known if h.law.uses_load or h.effect in (*BODIES, OFFSET, GravityTilt.name) else ()
         return h, sign, tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
@@ -214,6 +216,23 @@ def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Mot
         return motion
     key = ("load before", law.stage, *(e.key for e in known), motion.slow.tobytes())
     return motion.with_load(motion.remembered(key, lambda: load_before(motion, known, law.stage)))
+
+
+def of_motion_alone(columns: Mapping[Hashable, np.ndarray]) -> dict[Hashable, np.ndarray]:
+    """Of the columns that a segment keeps those that hold against any nominal model: they follow from q, v, a."""
+    return {key: x for key, x in columns.items() if isinstance(key, tuple) and _is_of_motion_alone(key[0].law)}
+
+
+def _is_of_motion_alone(law: Effect) -> bool:
+    """Whether the columns follow from the motion of the law's joint, whatever the nominal model."""
+    return not (law.reaches_all or law.uses_load)
+
+
+def _sign_model(problem: Problem, joint: int) -> tuple[float, bool, float]:
+    """What the direction of a joint follows from: slow speed, blur, and the speed at which it is held."""
+    straight = problem.straight is not None and bool(problem.straight[joint])
+    held = 0.0 if problem.held is None else max(float(problem.held[joint]), 0.0)
+    return float(problem.slow[joint]), straight, held
 
 
 def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
