@@ -11,6 +11,7 @@ from tests.diagnosis.conftest import Plant
 from lagnet.diagnosis.identified.remainder import RemainderSettings, learn_remainder
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.rigid_body.random_arm import random_arm
 
@@ -81,3 +82,21 @@ def test_a_seed_gives_one_result_and_another_seed_another(arm) -> None:
     assert all(np.array_equal(a, b) for a, b in zip(first.weights, again.weights, strict=True))
     assert np.array_equal(first.share, again.share)
     assert not np.array_equal(first.weights[0], other.weights[0])
+
+
+def test_what_acts_in_one_recording_alone_is_not_learned_anew(arm) -> None:
+    stiffness = Plant(arm).usual_torque()[0]
+    problem, mechanics = posed(arm, [lambda q, v, a, load: np.column_stack([stiffness * q[:, 0], 0.0 * q[:, 1]])])
+    there = NamedEffect("joint_spring", 0, {"k": stiffness, "q0": 0.0}, recording=0)
+    assert learn_remainder(problem, mechanics, seed=0) is not None
+    assert learn_remainder(problem, replace(mechanics, effects=(there,)), seed=0) is None
+
+
+def test_rest_is_no_motion_that_was_learned_from(learned) -> None:
+    problem, mechanics, _ = learned
+    rests = problem.fit[0].q[problem.fit[0].keep, 0] > np.median(problem.fit[0].q[:, 0])
+    counts = problem.fit[0].counts & ~rests[:, None]
+    few = replace(problem, fit=(problem.fit[0].with_counts(counts), *problem.fit[1:]))
+    epsilon = learn_remainder(few, mechanics, 0, replace(FEW, gain=0.0))
+    anchored = epsilon.anchors * epsilon.spread + epsilon.centre
+    assert np.sin(problem.fit[0].q[problem.fit[0].keep][counts.all(axis=1)][:, 0]).max() >= anchored[:, 0].max() - 1e-9

@@ -7,7 +7,7 @@ Source: Wu 2024.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import cast
 
@@ -36,7 +36,7 @@ class RemainderSettings:
         folds: contiguous blocks that are left out in turn.
         gain: least reduction of a joint's held-out squared error by ε, as a share, to be used there.
         most: training samples.
-        anchors: samples that describe the extent of the training motion.
+        anchors: samples that describe the extent of the motion that was learned from.
     """
 
     members: int = 3
@@ -70,12 +70,14 @@ def learn_remainder(
     )
     target = y / size
     share = _shares(x, target, valid, seed, settings)
-    if not share.any():
+    moves = valid[:, share > 0.0].all(axis=1)  # at rest nothing was learned: dry friction may take any value there
+    if not (share.any() and moves.any()):
         return None
     weights, biases = _train(x, target, valid, seed, settings)
     weights[-1], biases[-1] = weights[-1] * size, biases[-1] * size
-    rows = np.unique(np.linspace(0, len(x) - 1, settings.anchors).round().astype(int))
-    return LearnedRemainder(centre, spread, tuple(weights), tuple(biases), share, x[rows], _reach(x, x[rows]))
+    seen = x[moves]
+    anchors = seen[np.unique(np.linspace(0, len(seen) - 1, settings.anchors).round().astype(int))]
+    return LearnedRemainder(centre, spread, tuple(weights), tuple(biases), share, anchors, _reach(seen, anchors))
 
 
 def _samples(
@@ -84,7 +86,8 @@ def _samples(
     """Features, residual torque and mask of valid samples of the fitted motion, in the order of time."""
     xs, ys, masks = [], [], []
     for p in pieces:
-        residual = problem.reduce(p, p.tau - model.torque_along(p.time, p.q, p.v, p.a))
+        mechanics = replace(model, recording=p.origin)  # with what acts in this recording alone
+        residual = problem.reduce(p, p.tau - mechanics.torque_along(p.time, p.q, p.v, p.a))
         xs.append(features(p.q[p.keep], p.v[p.keep], p.a[p.keep]))
         ys.append(residual)
         masks.append(p.counts)
