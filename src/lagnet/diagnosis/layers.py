@@ -36,7 +36,8 @@ def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[
     """Estimates the layers beyond the named one, on fitted recordings alone, and judges all on held-out ones."""
     found = state.identified
     model = state.corrected if found is None else replace(state.corrected, identified=found.layer)
-    learned = None if found is None else learn_remainder(state.problem, model, state.seed)
+    remains = found is not None or any(size.above for size in state.sizes)
+    learned = learn_remainder(state.problem, model, state.seed) if remains else None
     model = replace(model, remainder=learned)
     torques = holdout_torques(model, held, state.holdout, ends_of)
     return Correction(model, found, torques, holdout_errors(torques, state.holdout))
