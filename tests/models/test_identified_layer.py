@@ -51,6 +51,22 @@ def test_all_layers_come_back_and_each_can_be_loaded_apart(model, tmp_path) -> N
     assert lagnet.load_robot(folder).identified is not None
 
 
+def test_a_layer_in_the_place_of_the_names_holds_their_torque_and_leaves_the_named_layer(model, tmp_path) -> None:
+    time, q, v, a = motion()
+    passing = NamedEffect("torque_offset", 2, {"b": 3.0}, interval=(0.5, 1.0))
+    both = replace(model, effects=(*model.effects, passing), instead=replace(model.identified, bodies=None))
+    back = lagnet.load_robot(save_corrected(both, tmp_path / "corrected"))
+    plain = CorrectedModel(model.nominal, (passing,), model.slow, identified=both.instead)
+    for way in (both, back):
+        got, want = way.torque_along(time, q, v, a), plain.torque_along(time, q, v, a)
+        np.testing.assert_allclose(got, want, rtol=ROUNDING, atol=ROUNDING)
+        np.testing.assert_allclose(way.mass_matrix(q), plain.mass_matrix(q), rtol=ROUNDING, atol=ROUNDING)
+        np.testing.assert_allclose(way.gravity_torque(q), model.nominal.gravity_torque(q), rtol=ROUNDING, atol=ROUNDING)
+    named = replace(both, identified=None, instead=None).torque_along(time, q, v, a)
+    np.testing.assert_allclose(back.with_layers("named").torque_along(time, q, v, a), named, rtol=ROUNDING)
+    assert back.effects == both.effects
+
+
 def test_identified_bodies_enter_the_rigid_terms(model) -> None:
     _, q, v, _ = motion()
     alone = replace(model, identified=None)

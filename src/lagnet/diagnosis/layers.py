@@ -9,8 +9,11 @@ import numpy as np
 
 from lagnet.diagnosis.holdout_torque import HoldoutTorque, holdout_errors, holdout_torques
 from lagnet.diagnosis.identified.fit import Identified
+from lagnet.diagnosis.identified.instead import instead_of_names
 from lagnet.diagnosis.identified.remainder import learn_remainder
+from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.state import DiagnosisState
+from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.recordings.recording import Recording
 
@@ -21,7 +24,7 @@ class Correction:
 
     Args:
         model: all layers.
-        identified: the identified layer with its equations; None where there is nothing to identify.
+        identified: the layer that torques are of, with its equations; None where there is nothing to identify.
         torques: torque of each layer at every held-out sample.
         errors: nMSE (dof,) of each layer on them.
     """
@@ -34,10 +37,17 @@ class Correction:
 
 def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[int | None]) -> Correction:
     """Estimates the layers beyond the named one, on fitted recordings alone, and judges all on held-out ones."""
-    found = state.identified
-    model = state.corrected if found is None else replace(state.corrected, identified=found.layer)
-    remains = found is not None or any(size.above for size in state.sizes)
-    learned = learn_remainder(state.problem, model, state.seed) if remains else None
+    beside, remains = state.identified, any(size.above for size in state.sizes)
+    instead = None
+    if beside is not None or remains:
+        instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside)
+    model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead))
+    found = beside if instead is None else instead
+    learned = learn_remainder(state.problem, model, state.seed) if found is not None or remains else None
     model = replace(model, remainder=learned)
     torques = holdout_torques(model, held, state.holdout, ends_of)
     return Correction(model, found, torques, holdout_errors(torques, state.holdout))
+
+
+def _layer_of(found: Identified | None) -> IdentifiedLayer | None:
+    return None if found is None else found.layer

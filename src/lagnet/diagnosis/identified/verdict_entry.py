@@ -18,13 +18,16 @@ NAMED_OPEN = 3  # undetermined combinations that a sentence names, each by its f
 UNITS = ("kg", *("kg m",) * 3, *("kg m²",) * 6)
 
 
-def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[str]) -> dict[str, Any]:
+def identified_as_json(
+    found: Identified | None, robot: Any, joints: Sequence[str], instead: bool = False
+) -> dict[str, Any]:
     """Parameters that the recordings determine beside the named physics, whatever their cause.
 
     Args:
         found: the layer with its equations; None where there is none.
         robot: the model whose bodies are changed.
         joints: names.
+        instead: whether it stands in the place of the named effects.
 
     Returns:
         `bodies` (combinations of inertial parameters that differ from the model, with 95 % intervals), `undetermined`
@@ -37,10 +40,15 @@ def identified_as_json(found: Identified | None, robot: Any, joints: Sequence[st
     own = [entry for j, name in enumerate(joints) if (entry := _joint(found, j, name))]
     ties = _ties(found, joints)
     words = _words(bodies, undetermined, own, ties, _late(found, joints))
+    words = f"{INSTEAD} {words}" if instead else words
     entry = {"bodies": bodies, "undetermined": undetermined, "joints": own, "ties": ties}
     return {**entry, "samples_that_count_as_one": found.choice.inefficiency, "words": words}
 
 
+INSTEAD = (
+    "Unseen motion is predicted better where the values of the named effects are not held fixed: in the identified "
+    "layer and the full correction this layer stands in their place. The names stay claims, judged by themselves."
+)
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
 
 

@@ -26,7 +26,7 @@ def with_layers(
         corrected: the model of all layers.
     """
     fits = tuple(_fit(fit, errors, j, corrected.remainder is not None) for j, fit in enumerate(verdict.fit))
-    told = identified_as_json(found, corrected.regressor_source, corrected.joints)
+    told = identified_as_json(found, corrected.regressor_source, corrected.joints, corrected.instead is not None)
     beside = BESIDE_FREE_LINKS in verdict.warnings
     effects = tuple(replace(e, explanation=e.explanation + whole_error_words(e, fits, beside)) for e in verdict.effects)
     return replace(verdict, fit=fits, effects=effects, identified=told)

@@ -50,11 +50,12 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
             for e in model.effects
         ],
         "identified": layer_as_json(model.identified),
+        "instead": layer_as_json(model.instead),
         "remainder": remainder_as_json(model.remainder),
     }
     write_whole(out / FILE, finite_json(text))
-    further = None if model.identified is None else model.identified.bodies
-    if isinstance(model.nominal, Robot) and are_consistent(model.nominal, model.effects, further):
+    further = None if model.layer is None else model.layer.bodies
+    if isinstance(model.nominal, Robot) and are_consistent(model.nominal, model.acting, further):
         write_description(cast(Robot, model.bodies()), out / "robot")
     return out
 
@@ -111,7 +112,7 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
-        identified = layer_from_json(text.get("identified"), len(joints))
+        identified, instead = (layer_from_json(text.get(k), len(joints)) for k in ("identified", "instead"))
         remainder = remainder_from_json(text.get("remainder"), len(joints))
         held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
@@ -127,7 +128,7 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
     straight = None if straight is None else straight.astype(bool)
     of_file = (str(folder), _checksum(where))
     model = CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left, identified=identified)
-    model = replace(model, remainder=remainder)
+    model = replace(model, instead=instead, remainder=remainder)
     return model.with_layers(layers)
 
 

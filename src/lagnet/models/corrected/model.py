@@ -14,7 +14,7 @@ from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError, ModelError
 from lagnet.models.corrected.changed_bodies import CHANGES_OF_BODIES, apply_to_bodies
 from lagnet.models.corrected.identified import IdentifiedLayer
-from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, load_before, passing, torque_with
 from lagnet.models.corrected.remainder import LearnedRemainder
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.types import (
@@ -61,6 +61,8 @@ class CorrectedModel:
         left: shape (dof,), √max(mean r² − σ², 0) of its residual r on held-out motion, σ the noise [N m]; None: not
             known.
         identified: Y Δπ and Σ_i w_i f_i, which the recordings determine whatever their cause; None: nothing.
+        instead: such a layer in the place of the effects that always act and of `identified`, where it predicts unseen
+            motion better than both: torques are then of it, and the effects are claims alone. None: there is none.
         remainder: ε, learned from the residual; None: nothing.
     """
 
@@ -74,6 +76,7 @@ class CorrectedModel:
     recording: int | None = None
     left: JointVector | None = None
     identified: IdentifiedLayer | None = None
+    instead: IdentifiedLayer | None = None
     remainder: LearnedRemainder | None = None
     kind: str = field(default="corrected", init=False)
 
@@ -83,6 +86,16 @@ class CorrectedModel:
             missing = {p.name for p in law.parameters} - set(effect.values)
             if missing:
                 raise EffectError(f"{law.name} lacks the parameters {sorted(missing)}", where=self.source or None)
+
+    @property
+    def layer(self) -> IdentifiedLayer | None:
+        """The identified layer that torques are of."""
+        return self.identified if self.instead is None else self.instead
+
+    @property
+    def acting(self) -> tuple[NamedEffect, ...]:
+        """The named effects that torques are of: all but those in whose place a layer stands."""
+        return self.effects if self.instead is None else passing(self.effects)
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -104,20 +117,20 @@ class CorrectedModel:
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """τ of samples without order, shape (n, dof) [N m]; delays and hysteresis need `torque_along`."""
         time = UNORDERED * np.arange(len(q))
-        ordered = [e for e in self.effects if effect_named(e.effect).instantaneous and e.interval is None]
+        ordered = [e for e in self.acting if effect_named(e.effect).instantaneous and e.interval is None]
         model = self._written or self.nominal
         if self._written is not None:
             ordered = [e for e in ordered if e.effect not in CHANGES_OF_BODIES]
         motion = self._motion(time, q, v, a, model.inverse_dynamics(q, v, a))
         if self._written is not None:
-            motion = motion.with_load(motion.load + shifted_weight(motion, self.effects))
+            motion = motion.with_load(motion.load + shifted_weight(motion, self.acting))
         return torque_with(motion, ordered) + self._beside(motion, ordered, in_order=False)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """τ along a motion on an even clock, with delays and hysteresis, shape (n, dof) [N m]."""
         motion = self._motion(time, q, v, a, torque_along(self.nominal, time, q, v, a))
-        named = torque_with(replace(motion, held=self.held), self.effects)
-        return named + self._beside(motion, self.effects, in_order=True)
+        named = torque_with(replace(motion, held=self.held), self.acting)
+        return named + self._beside(motion, self.acting, in_order=True)
 
     def mass_matrix(self, q: Trajectory) -> MassMatrix:
         """Joint-space inertia with rotors and changed bodies, shape (n, dof, dof)."""
@@ -167,11 +180,13 @@ class CorrectedModel:
             raise ModelError(f"layers={layers!r} is unknown", choices=LAYERS)
         if layers == "full":
             return self
-        return replace(self, identified=None if layers == "named" else self.identified, remainder=None)
+        if layers == "named":
+            return replace(self, identified=None, instead=None, remainder=None)
+        return replace(self, remainder=None)
 
     def bodies(self) -> RobotModel:
         """The nominal robot with all changes of bodies and tilt written into it, without friction and signals."""
-        named = apply_to_bodies(self.nominal, self.effects)
+        named = apply_to_bodies(self.nominal, self.acting)
         if self._body_change is None:
             return named
         return named.with_inertial_parameters(named.inertial_parameters() + self._body_change)
@@ -179,26 +194,26 @@ class CorrectedModel:
     @property
     def regressor_source(self) -> RigidBodyModel | None:
         """The model whose regressor holds for changes of these bodies, under gravity as named; None without bodies."""
-        tilts = [e for e in self.effects if e.effect == "gravity_tilt" and e.interval is None]
+        tilts = [e for e in self.acting if e.effect == "gravity_tilt" and e.interval is None]
         if not has_regressor(self.nominal):
             return None
         return apply_to_bodies(self.nominal, tilts) if tilts else self.nominal
 
     @property
     def _body_change(self) -> np.ndarray | None:
-        return None if self.identified is None else self.identified.bodies
+        return None if self.layer is None else self.layer.bodies
 
     @cached_property
     def _changes_bodies(self) -> bool:
-        return self._body_change is not None or any(e.effect in CHANGES_OF_BODIES for e in self.effects)
+        return self._body_change is not None or any(e.effect in CHANGES_OF_BODIES for e in self.acting)
 
     @cached_property
     def _written(self) -> RobotModel | None:
         """The robot with its changed bodies, many times faster than their regressors; None where there is none."""
-        if isinstance(self.nominal, CorrectedModel) or not any(e.effect in CHANGES_OF_BODIES for e in self.effects):
+        if isinstance(self.nominal, CorrectedModel) or not any(e.effect in CHANGES_OF_BODIES for e in self.acting):
             return None
         try:
-            return apply_to_bodies(self.nominal, self.effects) if is_robot_model(self.nominal) else None
+            return apply_to_bodies(self.nominal, self.acting) if is_robot_model(self.nominal) else None
         except ValueError:  # a first moment without mass
             return None
 
@@ -214,12 +229,12 @@ class CorrectedModel:
             tau_nominal = nominal.inverse_dynamics(q, v, a) - nominal.residual_torque(q, v, a)
         else:
             tau_nominal = part(q, v, a)
-        bodies = [e for e in self.effects if effect_named(e.effect).stage == "body" and e.interval is None]
+        bodies = [e for e in self.acting if effect_named(e.effect).stage == "body" and e.interval is None]
         named = torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, tau_nominal), bodies)
-        if self.identified is None:
+        if self.layer is None:
             return named
-        changed = self.identified.body_torque(self._source, q, v, a)
-        return named + changed + a @ self.identified.joint_inertia(self.n_dof)
+        changed = self.layer.body_torque(self._source, q, v, a)
+        return named + changed + a @ self.layer.joint_inertia(self.n_dof)
 
     def _beside(self, motion: Motion, effects: Sequence[NamedEffect], in_order: bool) -> Trajectory:
         """Y Δπ + Σ_i w_i f_i + ε, the layers beyond the named one, shape (n, dof) [N m].
@@ -229,11 +244,11 @@ class CorrectedModel:
             in_order: whether samples follow each other in time.
         """
         learned = 0.0 if self.remainder is None else self.remainder.torque(motion.q, motion.v, motion.a)
-        if self.identified is None:
+        if self.layer is None:
             return np.zeros_like(motion.load) + learned
-        changed = self.identified.body_torque(self._source, motion.q, motion.v, motion.a)
+        changed = self.layer.body_torque(self._source, motion.q, motion.v, motion.a)
         load = load_before(motion, effects, "torque") + changed
-        return changed + self.identified.term_torque(motion, load, in_order) + learned
+        return changed + self.layer.term_torque(motion, load, in_order) + learned
 
     @cached_property
     def _source(self) -> RigidBodyModel | None:

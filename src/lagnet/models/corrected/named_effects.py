@@ -76,6 +76,11 @@ class NamedEffect:
         return torque
 
 
+def passing(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
+    """Those that act for a while, or in one recording, alone."""
+    return tuple(e for e in effects if e.interval is not None or e.recording is not None)
+
+
 def _inside(time: np.ndarray, interval: tuple[float, float]) -> np.ndarray:
     """1 from t0 to t1, shape (n,), falling to 0 over one sample outside: a slope makes t0 and t1 differentiable."""
     step = float(np.median(np.diff(time))) if time.size > 1 else 1.0

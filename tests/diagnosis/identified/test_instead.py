@@ -1,0 +1,46 @@
+"""A layer stands in the place of names only where their values hinder it."""
+
+from __future__ import annotations
+
+import numpy as np
+from tests.diagnosis.conftest import Plant
+
+from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.identified.instead import instead_of_names
+from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.recordings.conditioning.condition import condition
+from lagnet.rigid_body.random_arm import random_arm
+
+HEAVIER = np.array([1.6, 0.6, 1.5])
+FRICTION = 0.8  # N m s/rad
+
+
+def posed(nominal, plant):
+    fit = condition([plant.record(1, 24.0)])
+    return pose_problem(nominal, fit, condition([plant.record(2, 24.0)], fit.bandwidth))
+
+
+def test_a_gain_in_the_place_of_wrong_links_is_given_up() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    real = arm.with_inertial_parameters(arm.inertial_parameters() * HEAVIER[:, None])
+    problem = posed(arm, Plant(real))
+    wrong = [NamedEffect("torque_gain", j, {"g": g}) for j, g in enumerate(HEAVIER)]
+    assert instead_of_names(problem, wrong, identify(problem, wrong)) is not None
+
+
+def test_right_names_stay_with_and_without_more_to_identify() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    law = lambda q, v, a, load: FRICTION * v  # noqa: E731
+    right = [NamedEffect("viscous_friction", j, {"Fv": FRICTION}) for j in range(3)]
+    for factors in (1.0, HEAVIER[:, None]):
+        real = arm.with_inertial_parameters(arm.inertial_parameters() * factors)
+        problem = posed(arm, Plant(real, [law]))
+        assert instead_of_names(problem, right, identify(problem, right)) is None
+
+
+def test_what_passes_is_kept_and_nothing_stands_in_its_place() -> None:
+    arm = random_arm(2, seed=4, kinds=("revolute",), fixed=False)
+    problem = posed(arm, Plant(arm))
+    there = [NamedEffect("torque_offset", 0, {"b": 5.0}, interval=(1.0, 2.0))]
+    assert instead_of_names(problem, there, None) is None
