@@ -1,0 +1,180 @@
+"""Which rules reject something anywhere? One diagnosis each of real arms and of plants of fresh seeds.
+
+python -m validation.ablations.consulted [--only KIND ...] [--report] [--out out/consulted]
+Each case is kept in the folder; the same command goes on where it stopped. Rules that rejected nothing in the ablation
+study are asked further: where one of them rejects, the case is diagnosed without it as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
+from lagnet.files import write_whole
+from validation.ablations import consulted_cases
+from validation.ablations.consulted_cases import Case, Posed
+from validation.ablations.names_alone import NAMES_ALONE
+from validation.ablations.taken_out import taken_out
+from validation.ablations.watched import Effects, WatchedRule
+from validation.another_simulator.mujoco_arm import CameApartError
+from validation.concealed.code import fingerprint
+
+HERE = Path(__file__).resolve().parent
+CODE = fingerprint()
+PLANTS = {"simulated": 48, "textured": 24, "far_models": 30, "another_simulator": 46}
+
+
+class Listener(WatchedRule):
+    """A rule that writes down what it takes out of a selection, in reruns too."""
+
+    def __init__(self, rule: RejectionRule, heard: Counter) -> None:
+        super().__init__(rule, {}, Effects())
+        self.heard = heard
+
+    def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
+        """What the rule rejects."""
+        found = self.rule.rejected(candidate)
+        self.heard.update(place_of(r) for r in (found if self.rule.together else found[:1]))
+        return found
+
+
+def place_of(rejection: Rejection) -> str:
+    """The rule, and the effect and joint that it rejects."""
+    where = "arm" if rejection.joint is None else str(rejection.joint)
+    return f"{rejection.rule}: {rejection.effect} @ {where}"
+
+
+def asked(posed: Posed, unsure: Sequence[str]) -> dict[str, Any]:
+    """Rejections at any point and those of the verdict, names and held-out errors; without each rule of `unsure`."""
+    heard: Counter = Counter()
+    whole = _diagnosed(posed, [Listener(r, heard) for r in RULES])
+    spoke = [r.name for r in RULES if any(place.startswith(f"{r.name}:") for place in heard)]
+    without = {name: _diagnosed(posed, [r for r in RULES if r.name != name]) for name in spoke if name in unsure}
+    return {
+        "at_any_point": dict(heard),
+        "in_the_verdict": sorted({place_of(r) for r in whole.state.rejected}),
+        **told(whole),
+        "without": {name: told(other) for name, other in without.items()},
+    }
+
+
+def told(result: Diagnosis) -> dict[str, Any]:
+    """Names with their ties and parameters, and the held-out error of what is named at each joint."""
+    names = {
+        f"{e.effect} @ {e.joint}" + "".join(f" | {t}" for t in e.tied_with): {
+            p.name: [p.value, *p.ci95] for p in e.parameters
+        }
+        for e in result.effects
+    }  # a load mounted twice stands once for each recording
+    return {"names": names, "nmse_named": [f.nmse_named for f in result.verdict.fit]}
+
+
+def _diagnosed(posed: Posed, rules: Sequence[RejectionRule]) -> Diagnosis:
+    robot, fit, held = posed
+    with taken_out(NAMES_ALONE):
+        return diagnose(fit, robot, held, rules=rules, seed=0)
+
+
+def every_case(data: Path, home: Path, only: Sequence[str]) -> Iterator[Case]:
+    """All cases, real arms first; `only`: of these kinds."""
+    every = (
+        *consulted_cases.real_arms(data, home),
+        *consulted_cases.concealed(data, home, PLANTS["simulated"], PLANTS["textured"]),
+        *consulted_cases.far_models(PLANTS["far_models"]),
+        *consulted_cases.another_simulator(PLANTS["another_simulator"]),
+    )
+    return (case for case in every if not only or case.kind in only)
+
+
+def conduct(every: Iterator[Case], unsure: Sequence[str], home: Path) -> None:
+    """Ask every case that is not kept already."""
+    for case in every:
+        file = home / case.kind / f"{re.sub('[^a-z0-9]+', '_', case.name)}.json"
+        if file.exists():
+            continue
+        try:
+            posed, hidden = case.posed()
+        except CameApartError as lost:
+            print(case.kind, lost, flush=True)
+            continue
+        began = time.process_time()
+        found = {"hidden": hidden, **asked(posed, unsure), "processor_seconds": time.process_time() - began}
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(file, json.dumps({"kind": case.kind, "name": case.name, **found}, indent=1).encode())
+        rules = sorted({place.partition(":")[0] for place in found["at_any_point"]})
+        print(f"{case.kind} {case.name}: {', '.join(rules)}; {found['processor_seconds']:.1f} s", flush=True)
+
+
+def summary(kept: Sequence[dict[str, Any]]) -> dict[str, dict[str, dict[str, int]]]:
+    """By rule and kind of data: cases with a rejection at any point, and with one in the verdict."""
+    kinds = list(dict.fromkeys(case["kind"] for case in kept))
+    return {
+        rule.name: {
+            kind: {
+                "cases": sum(case["kind"] == kind for case in kept),
+                **{when: _cases_with(rule.name, kind, when, kept) for when in ("at_any_point", "in_the_verdict")},
+            }
+            for kind in kinds
+        }
+        for rule in RULES
+    }
+
+
+def _cases_with(rule: str, kind: str, when: str, kept: Sequence[dict[str, Any]]) -> int:
+    own = (case for case in kept if case["kind"] == kind)
+    return sum(any(place.startswith(f"{rule}:") for place in case[when]) for case in own)
+
+
+def differences(kept: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Cases whose names are others without a rule: gained and lost names, what is hidden, the error ratio by joint."""
+    out = []
+    for case in kept:
+        for rule, other in case["without"].items():
+            gained, lost = ([n for n in a if n not in b] for a, b in _both_ways(other["names"], case["names"]))
+            if gained or lost:
+                ratios = [round(o / w, 4) for o, w in zip(other["nmse_named"], case["nmse_named"], strict=True)]
+                told = {"rule": rule, "kind": case["kind"], "case": case["name"], "hidden": case["hidden"]}
+                names = {n: other["names"].get(n, case["names"].get(n)) for n in (*gained, *lost)}
+                out.append({**told, "gained": gained, "lost": lost, "parameters": names, "error_without": ratios})
+    return out
+
+
+def _both_ways(one: Any, other: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    return (one, other), (other, one)
+
+
+def main() -> int:
+    """Ask, then write `consulted.json`."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    kinds = ("real_arms", "real_splits", *PLANTS)
+    parser.add_argument("--only", nargs="*", choices=kinds, default=(), help="these kinds of data; writes no result")
+    parser.add_argument("--report", action="store_true", help="run nothing, write the result of what is finished")
+    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
+    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
+    parser.add_argument("--out", type=Path, default=Path("out") / "consulted")
+    given = parser.parse_args()
+    home = given.out / "cases" / CODE[:12]
+    if not given.report:
+        unsure = json.loads((HERE / "result.json").read_text())["rules_that_rejected_nothing"]
+        conduct(every_case(given.data, given.out, given.only), unsure, home)
+    if given.only:
+        return 0
+    kept = [json.loads(file.read_text()) for kind in kinds for file in sorted((home / kind).glob("*.json"))]
+    result = {"code": CODE, "rules": summary(kept), "without": differences(kept)}
+    (HERE / "consulted.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,95 @@
+"""Diagnoses that rules are consulted in: real arms, other splits of these, and plants of four kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lagnet.recordings.recording import Recording
+from validation.ablations.plan import SIMULATED, TEXTURED, Source
+from validation.another_simulator.mujoco_arm import CameApartError
+from validation.another_simulator.plants import plant as mujoco_plant
+from validation.far_models.plants import draw
+from validation.real_arms.layers import cases, read
+from validation.real_arms.loaded import FILES, UR10E, calibrated, halves
+from validation.real_arms.splits import splits
+
+Posed = tuple[Any, Sequence[Recording], Sequence[Recording] | None]
+"""Nominal model, fitted and held-out recordings; None: the last fifth of each."""
+SECONDS = 22.0  # of a run of the other simulator
+MADE_ON, FRESH = (2, 3), 5  # seeds of the other simulator: those that `reversal_delay` was made on, and a fresh one
+FIRST_FAR = 200  # the study of far models has the numbers below 60
+
+
+@dataclass(frozen=True)
+class Case:
+    """One diagnosis.
+
+    Args:
+        kind: of the data.
+        name: of the case, in its kind.
+        posed: makes what is diagnosed, and the hidden causes; None where they are not known.
+    """
+
+    kind: str
+    name: str
+    posed: Callable[[], tuple[Posed, list[str] | None]]
+
+
+def real_arms(data: Path, home: Path) -> Iterator[Case]:
+    """All seven sets, the load that is mounted twice, and ten other splits."""
+    for kind, known in (("real_arms", cases(data)), ("real_splits", splits(data))):
+        for name, case in known.items():
+            yield Case(kind, name, lambda case=case: (case(), None))
+
+    def loaded() -> tuple[Posed, None]:
+        robot = calibrated(data, home / "calibrated")
+        parts = [halves(read(data / "ur10e_loaded" / file, robot, UR10E))[0] for file in FILES]
+        return (robot, parts, None), None
+
+    yield Case("real_arms", "loaded_both", loaded)
+
+
+def concealed(data: Path, home: Path, simulated: int, textured: int) -> Iterator[Case]:
+    """Plants of the concealed study's kind and with the texture of real arms, of fresh seeds."""
+    for source in (Source(SIMULATED, 49, simulated, 0), Source(TEXTURED, 50, textured, 0)):
+        for number in range(source.all):
+
+            def posed(source: Source = source, number: int = number) -> tuple[Posed, list[str]]:
+                plant = source.plant(number, home, data)
+                if plant is None:
+                    raise CameApartError(f"plant {number}: its closed loop was lost")
+                robot, recordings = plant.read()
+                return (robot, recordings[:-1], recordings[-1:]), [_place(h) for h in plant.plan.hidden]
+
+            yield Case(source.kind, f"plant {number}", posed)
+
+
+def far_models(count: int) -> Iterator[Case]:
+    """Models with masses missing, halved or doubled."""
+    for seed in range(FIRST_FAR, FIRST_FAR + count):
+
+        def posed(seed: int = seed) -> tuple[Posed, list[str]]:
+            plant = draw(seed)
+            hidden = [f"masses {plant.kind}", f"friction {plant.friction}"]
+            return (plant.nominal, [plant.record(1), plant.record(2)], [plant.record(3)]), hidden
+
+        yield Case("far_models", f"plant {seed}", posed)
+
+
+def another_simulator(count: int) -> Iterator[Case]:
+    """Arms that MuJoCo moves."""
+    for seed in (*MADE_ON, FRESH):
+        for index in range(count):
+
+            def posed(seed: int = seed, index: int = index) -> tuple[Posed, list[str]]:
+                plant = mujoco_plant(seed, index, SECONDS)
+                return (plant.robot, plant.recordings[:-1], plant.recordings[-1:]), [_place(h) for h in plant.hidden]
+
+            yield Case("another_simulator", f"seed {seed}, plant {index}", posed)
+
+
+def _place(hidden: Any) -> str:
+    return f"{hidden.effect} @ {hidden.joint}"
