@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.percent import percent
 
 
 def command(
@@ -51,5 +52,5 @@ def command(
     write_decomposition(parts, out)
     page = write_decomposition_report(parts, model, reference, out / "report.html")
     for joint, error, share in zip(parts.joints, parts.total_error.nmse, parts.shares["residual"], strict=True):
-        say(f"{joint}: nMSE of the total torque {error:.3g}, share of the residual {100 * share:.1f} %")
+        say(f"{joint}: nMSE of the total torque {error:.3g}, share of the residual {percent(share, 3)}")
     say(f"report: {page}")

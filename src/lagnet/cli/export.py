@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lagnet.errors import LagnetError
+from lagnet.percent import percent
 
 if TYPE_CHECKING:
     from lagnet.simulators.export import Export
@@ -99,5 +100,5 @@ def _words(exporter: str, effect: str, place: Place) -> str:
     from lagnet.simulators.measured import measured_errors
 
     measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
-    off = "".join(f", {100 * share:.3g} % off in {engine}" for engine, share in measured.items())
+    off = "".join(f", {percent(share, 3)} off in {engine}" for engine, share in measured.items())
     return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"

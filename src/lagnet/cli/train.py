@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.percent import percent
+
 if TYPE_CHECKING:
     from lagnet.training.settings import TrainingSettings
 
@@ -73,7 +75,7 @@ def command(
         raise typer.Exit(INTERRUPTED)
     fit.model.save(out)
     for joint, error in zip(fit.model.joints, fit.stats.get("held_out_error") or (), strict=False):
-        say(f"{joint}: held-out torque error {100 * error:.3g} % of its variance")
+        say(f"{joint}: held-out torque error {percent(error, 3)} of its variance")
     say(f"model: {out}")
     if fit.stats.get("interrupted"):
         say("interrupted: the best model so far was kept; the same command goes on from there")
