@@ -55,12 +55,12 @@ def place_of(rejection: Rejection) -> str:
     return f"{rejection.rule}: {rejection.effect} @ {where}"
 
 
-def asked(posed: Posed, unsure: Sequence[str]) -> dict[str, Any]:
-    """Rejections at any point and those of the verdict, names and held-out errors; without each rule of `unsure`."""
+def asked(posed: Posed, unproven: Sequence[str]) -> dict[str, Any]:
+    """Rejections at any point and those of the verdict, names and held-out errors; without each rule of `unproven`."""
     heard: Counter = Counter()
     whole = _diagnosed(posed, [Listener(r, heard) for r in RULES])
     spoke = [r.name for r in RULES if any(place.startswith(f"{r.name}:") for place in heard)]
-    without = {name: _diagnosed(posed, [r for r in RULES if r.name != name]) for name in spoke if name in unsure}
+    without = {name: _diagnosed(posed, [r for r in RULES if r.name != name]) for name in spoke if name in unproven}
     return {
         "at_any_point": dict(heard),
         "in_the_verdict": sorted({place_of(r) for r in whole.state.rejected}),
@@ -97,7 +97,7 @@ def every_case(data: Path, home: Path, only: Sequence[str]) -> Iterator[Case]:
     return (case for case in every if not only or case.kind in only)
 
 
-def conduct(every: Iterator[Case], unsure: Sequence[str], home: Path) -> None:
+def conduct(every: Iterator[Case], unproven: Sequence[str], home: Path) -> None:
     """Ask every case that is not kept already."""
     for case in every:
         file = home / case.kind / f"{re.sub('[^a-z0-9]+', '_', case.name)}.json"
@@ -109,7 +109,7 @@ def conduct(every: Iterator[Case], unsure: Sequence[str], home: Path) -> None:
             print(case.kind, lost, flush=True)
             continue
         began = time.process_time()
-        found = {"hidden": hidden, **asked(posed, unsure), "processor_seconds": time.process_time() - began}
+        found = {"hidden": hidden, **asked(posed, unproven), "processor_seconds": time.process_time() - began}
         file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(file, json.dumps({"kind": case.kind, "name": case.name, **found}, indent=1).encode())
         rules = sorted({place.partition(":")[0] for place in found["at_any_point"]})
@@ -166,8 +166,8 @@ def main() -> int:
     given = parser.parse_args()
     home = given.out / "cases" / CODE[:12]
     if not given.report:
-        unsure = json.loads((HERE / "result.json").read_text())["rules_that_rejected_nothing"]
-        conduct(every_case(given.data, given.out, given.only), unsure, home)
+        unproven = json.loads((HERE / "result.json").read_text())["rules_that_rejected_nothing"]
+        conduct(every_case(given.data, given.out, given.only), unproven, home)
     if given.only:
         return 0
     kept = [json.loads(file.read_text()) for kind in kinds for file in sorted((home / kind).glob("*.json"))]

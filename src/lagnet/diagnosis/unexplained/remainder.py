@@ -39,14 +39,14 @@ class JointRemainder:
         above: whether it exceeds the noise, on held-out motion or, if not there, on the fitted one.
         power: mean square on held-out samples [N² m²].
         share: of the joint's mismatch beyond the noise that is left, on the motion where it exceeds it, 0 to 1.
-        ceiling: how much of it any smooth function predicts; nothing where it is noise.
+        predictability: how much of it any smooth function predicts; nothing where it is noise.
         shape: how it looks against its strongest signal; None where it is noise or nothing predicts it.
     """
 
     above: bool
     power: float
     share: float
-    ceiling: Predictability
+    predictability: Predictability
     shape: RemainderShape | None
 
 
@@ -102,10 +102,10 @@ def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
 def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
     (residual, valid), (test, test_valid) = after.fit, after.holdout
     seen, truth = residual[:, joint], test[:, joint] * test_valid[:, joint]
-    ceiling = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
+    predictability = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
     shape = None
-    if ceiling.depends_on:
+    if predictability.depends_on:
         signals = (after.seen.only(valid[:, joint]), after.unseen.only(test_valid[:, joint]))
         residuals = (seen[valid[:, joint]], test[test_valid[:, joint], joint])
-        shape = find_shape(signals, residuals, ceiling.depends_on, slow)
-    return ceiling, shape
+        shape = find_shape(signals, residuals, predictability.depends_on, slow)
+    return predictability, shape
