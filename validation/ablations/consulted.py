@@ -21,6 +21,7 @@ from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.catalogue import RULES
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
+from lagnet.errors import DiagnosisError
 from lagnet.files import write_whole
 from validation.ablations import consulted_cases
 from validation.ablations.consulted_cases import Case, Posed
@@ -103,13 +104,13 @@ def conduct(every: Iterator[Case], unproven: Sequence[str], home: Path) -> None:
         file = home / case.kind / f"{re.sub('[^a-z0-9]+', '_', case.name)}.json"
         if file.exists():
             continue
+        began = time.process_time()
         try:
             posed, hidden = case.posed()
-        except CameApartError as lost:
-            print(case.kind, lost, flush=True)
+            found = {"hidden": hidden, **asked(posed, unproven), "processor_seconds": time.process_time() - began}
+        except (CameApartError, DiagnosisError) as refused:  # neither has a verdict
+            print(case.kind, case.name, refused, flush=True)
             continue
-        began = time.process_time()
-        found = {"hidden": hidden, **asked(posed, unproven), "processor_seconds": time.process_time() - began}
         file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(file, json.dumps({"kind": case.kind, "name": case.name, **found}, indent=1).encode())
         rules = sorted({place.partition(":")[0] for place in found["at_any_point"]})
