@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold, TorqueConstant
+from lagnet.cli.shared.robots import load_models
 from lagnet.percent import percent
 
 
@@ -22,13 +23,9 @@ def command(
     member: Annotated[
         list[str] | None, typer.Option(help="Further model of an ensemble, whose spread becomes a band; repeatable.")
     ] = None,
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
+    hold: Hold = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("decomposition"),
     seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
 ) -> None:

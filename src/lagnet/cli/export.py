@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.cli.shared.options import Columns, ServoKd, ServoKp, TorqueConstant
 from lagnet.errors import LagnetError
 from lagnet.percent import percent
 
@@ -24,14 +25,10 @@ def command(
     verify: Annotated[
         list[Path] | None, typer.Option(help="Recordings to simulate in that engine (mjcf, pybullet).")
     ] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
-    kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
-    kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
+    kp: ServoKp = None,
+    kd: ServoKd = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
     from lagnet.cli.shared.console import numbers, say

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.cli.shared.options import Columns
 from lagnet.percent import percent
 
 if TYPE_CHECKING:
@@ -30,9 +31,7 @@ def command(
     steps: Annotated[
         int | None, typer.Option(help="Gradient steps; unlike minutes they give the same model again.")
     ] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
+    columns: Columns = None,
     joint_types: Annotated[
         str | None, typer.Option(help="Comma-separated: continuous, revolute or prismatic for each joint.")
     ] = None,
