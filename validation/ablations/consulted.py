@@ -33,7 +33,7 @@ from validation.concealed.code import fingerprint
 
 HERE = Path(__file__).resolve().parent
 CODE = fingerprint()
-PLANTS = {"simulated": 48, "textured": 24, "far_models": 30, "another_simulator": 46}
+PLANTS = {"simulated": 48, "textured": 24, "unlisted": 8, "late_logs": 4, "far_models": 30, "another_simulator": 46}
 
 
 class Listener(WatchedRule):
@@ -92,6 +92,8 @@ def every_case(data: Path, home: Path, only: Sequence[str]) -> Iterator[Case]:
     every = (
         *consulted_cases.real_arms(data, home),
         *consulted_cases.concealed(data, home, PLANTS["simulated"], PLANTS["textured"]),
+        *consulted_cases.unlisted(home, PLANTS["unlisted"]),
+        *consulted_cases.late_logs(data, home, PLANTS["late_logs"]),
         *consulted_cases.far_models(PLANTS["far_models"]),
         *consulted_cases.another_simulator(PLANTS["another_simulator"]),
     )

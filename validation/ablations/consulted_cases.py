@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count, islice, product
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
 
 from lagnet.recordings.recording import Recording
 from validation.ablations.plan import SIMULATED, TEXTURED, Source
 from validation.another_simulator.mujoco_arm import CameApartError
 from validation.another_simulator.plants import plant as mujoco_plant
 from validation.far_models.plants import draw
+from validation.plants.catalogue.draw_plan import GROUPS
 from validation.real_arms.layers import cases, read
 from validation.real_arms.loaded import FILES, UR10E, calibrated, halves
 from validation.real_arms.splits import splits
@@ -20,6 +25,8 @@ Posed = tuple[Any, Sequence[Recording], Sequence[Recording] | None]
 """Nominal model, fitted and held-out recordings; None: the last fifth of each."""
 SECONDS = 22.0  # of a run of the other simulator
 MADE_ON, FRESH = (2, 3), 5  # seeds of the other simulator: those that `reversal_delay` was made on, and a fresh one
+UNLISTED_MADE_ON, UNLISTED_FRESH = (101, 102, 103), 51
+LATE = (0.3, 0.6)  # [s]; delays up to 0.25 s are searched
 FIRST_FAR = 200  # the study of far models has the numbers below 60
 
 
@@ -58,18 +65,56 @@ def concealed(data: Path, home: Path, simulated: int, textured: int) -> Iterator
         for number in range(source.all):
 
             def posed(source: Source = source, number: int = number) -> tuple[Posed, list[str]]:
-                plant = source.plant(number, home, data)
-                if plant is None:
-                    raise CameApartError(f"plant {number}: its closed loop was lost")
-                robot, recordings = plant.read()
-                return (robot, recordings[:-1], recordings[-1:]), [_place(h) for h in plant.plan.hidden]
+                return _kept(source, number, home, data)
 
             yield Case(source.kind, f"plant {number}", posed)
 
 
-def far_models(count: int) -> Iterator[Case]:
+def unlisted(home: Path, each: int) -> Iterator[Case]:
+    """Plants with physics in no catalogue: of the seeds that `surrogate_terms` was made on, and of a fresh one."""
+    for seed in (*UNLISTED_MADE_ON, UNLISTED_FRESH):
+        numbers = (n for n in count() if GROUPS[n % len(GROUPS)] == "unlisted")
+        for number in islice(numbers, each):
+
+            def posed(seed: int = seed, number: int = number) -> tuple[Posed, list[str]]:
+                return _kept(Source(SIMULATED, seed, 0, 0), number, home, home)
+
+            yield Case("unlisted", f"seed {seed}, plant {number}", posed)
+
+
+def late_logs(data: Path, home: Path, plants: int) -> Iterator[Case]:
+    """Plants whose torque is stamped later than any delay that is searched, of one joint or of all."""
+    for number in range(plants):
+        for joints, late in product(("all", "one"), LATE):
+
+            def posed(number: int = number, joints: str = joints, late: float = late) -> tuple[Posed, list[str]]:
+                (robot, fit, held), hidden = _kept(Source(SIMULATED, 49, 0, 0), number, home, data)
+                at = slice(None) if joints == "all" else [number % robot.n_dof]
+                fit, held = ([_later(r, at, late) for r in part] for part in (fit, held or ()))
+                return (robot, fit, held), [*hidden, f"log of {joints} {late} s late"]
+
+            yield Case("late_logs", f"plant {number}, {joints}, {late} s", posed)
+
+
+def _later(recording: Recording, joints: Any, late: float) -> Recording:
+    """Torque of some joints stamped that much later [s]."""
+    tau = np.array(recording.tau)
+    then = np.maximum(recording.time - late, recording.time[0])
+    tau[:, joints] = CubicSpline(recording.time, tau[:, joints])(then)
+    return replace(recording, tau=tau)
+
+
+def _kept(source: Source, number: int, home: Path, data: Path) -> tuple[Posed, list[str]]:
+    plant = source.plant(number, home, data)
+    if plant is None:
+        raise CameApartError(f"plant {number}: its closed loop was lost")
+    robot, recordings = plant.read()
+    return (robot, recordings[:-1], recordings[-1:]), [_place(h) for h in plant.plan.hidden]
+
+
+def far_models(plants: int) -> Iterator[Case]:
     """Models with masses missing, halved or doubled."""
-    for seed in range(FIRST_FAR, FIRST_FAR + count):
+    for seed in range(FIRST_FAR, FIRST_FAR + plants):
 
         def posed(seed: int = seed) -> tuple[Posed, list[str]]:
             plant = draw(seed)
@@ -79,10 +124,10 @@ def far_models(count: int) -> Iterator[Case]:
         yield Case("far_models", f"plant {seed}", posed)
 
 
-def another_simulator(count: int) -> Iterator[Case]:
+def another_simulator(plants: int) -> Iterator[Case]:
     """Arms that MuJoCo moves."""
     for seed in (*MADE_ON, FRESH):
-        for index in range(count):
+        for index in range(plants):
 
             def posed(seed: int = seed, index: int = index) -> tuple[Posed, list[str]]:
                 plant = mujoco_plant(seed, index, SECONDS)
