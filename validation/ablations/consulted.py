@@ -2,7 +2,8 @@
 
 python -m validation.ablations.consulted [--only KIND ...] [--report] [--out out/consulted]
 Each case is kept in the folder; the same command goes on where it stopped. Rules that rejected nothing in the ablation
-study are asked further: where one of them rejects, the case is diagnosed without it as well.
+study, and on real arms all that bought nothing there, are asked further: where one rejects, the case is diagnosed
+without it.
 """
 
 from __future__ import annotations
@@ -11,9 +12,8 @@ import argparse
 import json
 import os
 import re
-import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from lagnet.errors import DiagnosisError
 from lagnet.files import write_whole
 from validation.ablations import consulted_cases
 from validation.ablations.consulted_cases import Case, Posed
+from validation.ablations.consulted_summary import differences, summary
 from validation.ablations.names_alone import NAMES_ALONE
 from validation.ablations.taken_out import taken_out
 from validation.ablations.watched import Effects, WatchedRule
@@ -33,6 +34,8 @@ from validation.concealed.code import fingerprint
 
 HERE = Path(__file__).resolve().parent
 CODE = fingerprint()
+Unproven = Callable[[str], Sequence[str]]
+"""Rules to leave out where they reject something, by kind of data."""
 PLANTS = {"simulated": 48, "textured": 24, "unlisted": 8, "late_logs": 4, "far_models": 30, "another_simulator": 46}
 
 
@@ -56,18 +59,24 @@ def place_of(rejection: Rejection) -> str:
     return f"{rejection.rule}: {rejection.effect} @ {where}"
 
 
-def asked(posed: Posed, unproven: Sequence[str]) -> dict[str, Any]:
-    """Rejections at any point and those of the verdict, names and held-out errors; without each rule of `unproven`."""
+def asked(posed: Posed) -> dict[str, Any]:
+    """Rejections at any point and those of the verdict, names and held-out errors."""
     heard: Counter = Counter()
     whole = _diagnosed(posed, [Listener(r, heard) for r in RULES])
-    spoke = [r.name for r in RULES if any(place.startswith(f"{r.name}:") for place in heard)]
-    without = {name: _diagnosed(posed, [r for r in RULES if r.name != name]) for name in spoke if name in unproven}
-    return {
-        "at_any_point": dict(heard),
-        "in_the_verdict": sorted({place_of(r) for r in whole.state.rejected}),
-        **told(whole),
-        "without": {name: told(other) for name, other in without.items()},
-    }
+    rejected = sorted({place_of(r) for r in whole.state.rejected})
+    return {"at_any_point": dict(heard), "in_the_verdict": rejected, **told(whole), "without": {}}
+
+
+def ask_further(posed: Posed, found: dict[str, Any], unproven: Sequence[str]) -> None:
+    """Asks without each rule of `unproven` that rejected something, where that is not yet known."""
+    for name in open_rules(found, unproven):
+        found["without"][name] = told(_diagnosed(posed, [r for r in RULES if r.name != name]))
+
+
+def open_rules(found: dict[str, Any], unproven: Sequence[str]) -> list[str]:
+    """Rules of `unproven` that rejected something, without which a case has not been diagnosed."""
+    spoke = {place.partition(":")[0] for place in found["at_any_point"]}
+    return [rule for rule in unproven if rule in spoke and rule not in found["without"]]
 
 
 def told(result: Diagnosis) -> dict[str, Any]:
@@ -100,61 +109,29 @@ def every_case(data: Path, home: Path, only: Sequence[str]) -> Iterator[Case]:
     return (case for case in every if not only or case.kind in only)
 
 
-def conduct(every: Iterator[Case], unproven: Sequence[str], home: Path) -> None:
-    """Ask every case that is not kept already."""
+def conduct(every: Iterator[Case], unproven: Unproven, home: Path) -> None:
+    """Ask every case for what is not kept already."""
     for case in every:
         file = home / case.kind / f"{re.sub('[^a-z0-9]+', '_', case.name)}.json"
-        if file.exists():
+        found = json.loads(file.read_text()) if file.exists() else {}
+        if found and not open_rules(found, unproven(case.kind)):
             continue
-        began = time.process_time()
         try:
             posed, hidden = case.posed()
-            found = {"hidden": hidden, **asked(posed, unproven), "processor_seconds": time.process_time() - began}
+            found = found or {"kind": case.kind, "name": case.name, "hidden": hidden, **asked(posed)}
+            ask_further(posed, found, unproven(case.kind))
         except (CameApartError, DiagnosisError) as refused:  # neither has a verdict
             print(case.kind, case.name, refused, flush=True)
             continue
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(file, json.dumps({"kind": case.kind, "name": case.name, **found}, indent=1).encode())
-        rules = sorted({place.partition(":")[0] for place in found["at_any_point"]})
-        print(f"{case.kind} {case.name}: {', '.join(rules)}; {found['processor_seconds']:.1f} s", flush=True)
+        write_whole(file, json.dumps(found, indent=1).encode())
+        print(case.kind, case.name, *sorted({p.partition(":")[0] for p in found["at_any_point"]}), flush=True)
 
 
-def summary(kept: Sequence[dict[str, Any]]) -> dict[str, dict[str, dict[str, int]]]:
-    """By rule and kind of data: cases with a rejection at any point, and with one in the verdict."""
-    kinds = list(dict.fromkeys(case["kind"] for case in kept))
-    return {
-        rule.name: {
-            kind: {
-                "cases": sum(case["kind"] == kind for case in kept),
-                **{when: _cases_with(rule.name, kind, when, kept) for when in ("at_any_point", "in_the_verdict")},
-            }
-            for kind in kinds
-        }
-        for rule in RULES
-    }
-
-
-def _cases_with(rule: str, kind: str, when: str, kept: Sequence[dict[str, Any]]) -> int:
-    own = (case for case in kept if case["kind"] == kind)
-    return sum(any(place.startswith(f"{rule}:") for place in case[when]) for case in own)
-
-
-def differences(kept: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Cases whose names are others without a rule: gained and lost names, what is hidden, the error ratio by joint."""
-    out = []
-    for case in kept:
-        for rule, other in case["without"].items():
-            gained, lost = ([n for n in a if n not in b] for a, b in _both_ways(other["names"], case["names"]))
-            if gained or lost:
-                ratios = [round(o / w, 4) for o, w in zip(other["nmse_named"], case["nmse_named"], strict=True)]
-                told = {"rule": rule, "kind": case["kind"], "case": case["name"], "hidden": case["hidden"]}
-                names = {n: other["names"].get(n, case["names"].get(n)) for n in (*gained, *lost)}
-                out.append({**told, "gained": gained, "lost": lost, "parameters": names, "error_without": ratios})
-    return out
-
-
-def _both_ways(one: Any, other: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    return (one, other), (other, one)
+def of_the_study(kind: str) -> list[str]:
+    """Rules to ask further: those that rejected nothing in the study; on real arms, all that buy nothing there."""
+    result = json.loads((HERE / "result.json").read_text())
+    return result["rules_that_buy_nothing" if kind == "real_arms" else "rules_that_rejected_nothing"]
 
 
 def main() -> int:
@@ -169,8 +146,7 @@ def main() -> int:
     given = parser.parse_args()
     home = given.out / "cases" / CODE[:12]
     if not given.report:
-        unproven = json.loads((HERE / "result.json").read_text())["rules_that_rejected_nothing"]
-        conduct(every_case(given.data, given.out, given.only), unproven, home)
+        conduct(every_case(given.data, given.out, given.only), of_the_study, home)
     if given.only:
         return 0
     kept = [json.loads(file.read_text()) for kind in kinds for file in sorted((home / kind).glob("*.json"))]

@@ -15,7 +15,7 @@ from lagnet.recordings.recording import Recording
 from validation.ablations.plan import SIMULATED, TEXTURED, Source
 from validation.another_simulator.mujoco_arm import CameApartError
 from validation.another_simulator.plants import plant as mujoco_plant
-from validation.far_models.plants import draw
+from validation.far_models.plants import FarPlant, draw
 from validation.plants.catalogue.draw_plan import GROUPS
 from validation.real_arms.layers import cases, read
 from validation.real_arms.loaded import FILES, UR10E, calibrated, halves
@@ -118,10 +118,21 @@ def far_models(plants: int) -> Iterator[Case]:
 
         def posed(seed: int = seed) -> tuple[Posed, list[str]]:
             plant = draw(seed)
-            hidden = [f"masses {plant.kind}", f"friction {plant.friction}"]
-            return (plant.nominal, [plant.record(1), plant.record(2)], [plant.record(3)]), hidden
+            return (plant.nominal, [plant.record(1), plant.record(2)], [plant.record(3)]), _hidden_in(plant)
 
         yield Case("far_models", f"plant {seed}", posed)
+
+
+def _hidden_in(plant: FarPlant) -> list[str]:
+    """Friction and rotors of all joints, and the links whose masses are wrong."""
+    masses = zip(
+        plant.nominal.joints, *(r.inertial_parameters()[:, 0] for r in (plant.nominal, plant.true)), strict=True
+    )
+    links = [f"link_inertia @ {joint}" for joint, modelled, true in masses if modelled != true]
+    return [*(f"{effect} @ {joint}" for joint in plant.nominal.joints for effect in OF_ALL_JOINTS), *links]
+
+
+OF_ALL_JOINTS = ("coulomb_friction", "asymmetric_friction", "torque_offset", "viscous_friction", "rotor_inertia")
 
 
 def another_simulator(plants: int) -> Iterator[Case]:
@@ -131,7 +142,10 @@ def another_simulator(plants: int) -> Iterator[Case]:
 
             def posed(seed: int = seed, index: int = index) -> tuple[Posed, list[str]]:
                 plant = mujoco_plant(seed, index, SECONDS)
-                return (plant.robot, plant.recordings[:-1], plant.recordings[-1:]), [_place(h) for h in plant.hidden]
+                hidden = [
+                    f"{h.effect} @ {None if h.joint is None else plant.robot.joints[h.joint]}" for h in plant.hidden
+                ]
+                return (plant.robot, plant.recordings[:-1], plant.recordings[-1:]), hidden
 
             yield Case("another_simulator", f"seed {seed}, plant {index}", posed)
 
