@@ -25,7 +25,7 @@ from lagnet.errors import DiagnosisError
 from lagnet.files import write_whole
 from validation.ablations import consulted_cases
 from validation.ablations.consulted_cases import Case, Posed
-from validation.ablations.consulted_summary import differences, summary
+from validation.ablations.consulted_summary import differences, summary, table
 from validation.ablations.names_alone import NAMES_ALONE
 from validation.ablations.taken_out import taken_out
 from validation.ablations.watched import Effects, WatchedRule
@@ -135,7 +135,7 @@ def of_the_study(kind: str) -> list[str]:
 
 
 def main() -> int:
-    """Ask, then write `consulted.json`."""
+    """Ask, then write `consulted.json` and its table in README.md."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = ("real_arms", "real_splits", *PLANTS)
     parser.add_argument("--only", nargs="*", choices=kinds, default=(), help="these kinds of data; writes no result")
@@ -152,6 +152,11 @@ def main() -> int:
     kept = [json.loads(file.read_text()) for kind in kinds for file in sorted((home / kind).glob("*.json"))]
     result = {"code": CODE, "rules": summary(kept), "without": differences(kept)}
     (HERE / "consulted.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    page = HERE / "README.md"
+    text = f"<!-- consulted -->\n{table(result['rules'])}\n<!-- /consulted -->"
+    page.write_text(
+        re.sub(r"<!-- consulted -->.*?<!-- /consulted -->", lambda _: text, page.read_text(), flags=re.DOTALL)
+    )
     return 0
 
 

@@ -65,3 +65,17 @@ def is_hidden(name: str, hidden: Sequence[str]) -> bool:
     (first, *ties), place = [part.strip() for part in name.split("|")], name.partition(" @ ")[2].split(" |")[0]
     effects = {first.partition(" @ ")[0], *(tie.partition(" @ ")[0] for tie in ties)}
     return any(cause.partition(" @ ")[0] in effects and cause.partition(" @ ")[2] == place for cause in hidden)
+
+
+def table(rules: dict[str, dict[str, dict[str, int]]]) -> str:
+    """A row a rule, a column a kind of data: cases with a rejection; in brackets, those whose names differ without it."""
+    kinds = list(next(iter(rules.values())))
+    head = [f"{kind.replace('_', ' ')} ({next(iter(rules.values()))[kind]['cases']})" for kind in kinds]
+    rows = [[f"`{rule}`", *(_cell(of[kind]) for kind in kinds)] for rule, of in rules.items()]
+    lines = [["rule", *head], ["---"] * (1 + len(kinds)), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _cell(counts: dict[str, int]) -> str:
+    asked = f" ({counts['other_names_without']} of {counts['asked_without']})" if counts["asked_without"] else ""
+    return f"{counts['at_any_point']}{asked}" if counts["at_any_point"] else "–"
