@@ -68,7 +68,7 @@ def is_hidden(name: str, hidden: Sequence[str]) -> bool:
 
 
 def table(rules: dict[str, dict[str, dict[str, int]]]) -> str:
-    """A row a rule, a column a kind of data: cases with a rejection; in brackets, those whose names differ without it."""
+    """A row a rule, a column a kind: cases with a rejection; in brackets, those whose names differ without the rule."""
     kinds = list(next(iter(rules.values())))
     head = [f"{kind.replace('_', ' ')} ({next(iter(rules.values()))[kind]['cases']})" for kind in kinds]
     rows = [[f"`{rule}`", *(_cell(of[kind]) for kind in kinds)] for rule, of in rules.items()]
