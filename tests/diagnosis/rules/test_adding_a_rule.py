@@ -55,7 +55,7 @@ def copy(tmp_path_factory) -> Path:
 def blocks() -> list[str]:
     """Rule, trial, line in RULES, cases, line in CASES."""
     page = (ROOT / "docs" / "adding_a_rule.md").read_text(encoding="utf-8")
-    return re.findall(r"^```python\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    return re.findall(r"^```(?:python|text)\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
 
 
 def within(file: Path, old: str, new: str) -> None:
