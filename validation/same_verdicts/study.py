@@ -22,6 +22,7 @@ from validation.same_verdicts.compare import differences, largest_change, names_
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 SEED = 49
+ARMS = {arm.name: arm for arm in (EMPS, TX40, UR10E)}
 HERE_NOW = "now"  # the lagnet that this study runs with
 EXPECTED = ("fit[].nmse_nominal", "fit[].nmse_named")  # told over all held-out samples since contract 11
 
@@ -88,11 +89,12 @@ def main() -> int:
     parser.add_argument("--plants", type=int, default=8)
     parser.add_argument("--quick", action="store_true", help="one plant and no arm; writes nothing")
     default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
+    parser.add_argument("--arms", nargs="*", choices=ARMS, default=list(ARMS))
     parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
     parser.add_argument("--out", type=Path, default=Path("out") / "same_verdicts")
     given = parser.parse_args()
     given.out = given.out / "quick" if given.quick else given.out
-    asked, arms = given.out / "cases.json", () if given.quick else (EMPS, TX40, UR10E)
+    asked, arms = given.out / "cases.json", () if given.quick else tuple(ARMS[a] for a in given.arms)
     given.out.mkdir(parents=True, exist_ok=True)
     asked.write_text(json.dumps(cases(given.data, given.out, 1 if given.quick else given.plants, arms)))
     names = [case["name"] for case in json.loads(asked.read_text())]
