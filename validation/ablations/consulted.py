@@ -21,7 +21,7 @@ from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.catalogue import RULES
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
-from lagnet.errors import DiagnosisError
+from lagnet.errors import LagnetError
 from lagnet.files import write_whole
 from validation.ablations import consulted_cases
 from validation.ablations.consulted_cases import Case, Posed
@@ -120,7 +120,7 @@ def conduct(every: Iterator[Case], unproven: Unproven, home: Path) -> None:
             posed, hidden = case.posed()
             found = found or {"kind": case.kind, "name": case.name, "hidden": hidden, **asked(posed)}
             ask_further(posed, found, unproven(case.kind))
-        except (CameApartError, DiagnosisError) as refused:  # neither has a verdict
+        except (CameApartError, LagnetError) as refused:  # neither has a verdict
             print(case.kind, case.name, refused, flush=True)
             continue
         file.parent.mkdir(parents=True, exist_ok=True)
