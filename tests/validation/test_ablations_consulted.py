@@ -38,7 +38,8 @@ def test_rejections_are_counted_by_cases() -> None:
 
 
 def test_a_difference_tells_the_names_whether_they_are_hidden_and_the_errors() -> None:
-    (found,) = differences([CASE])
+    ((key, found),) = differences([CASE]).items()
+    assert key == "surrogate_terms__simulated__plant_3"
     (name,) = found["named_without_it"]
     assert name["name"] == "torque_gain @ wrist | joint_spring"
     assert name["is_hidden"] is False

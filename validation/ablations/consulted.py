@@ -25,7 +25,7 @@ from lagnet.errors import LagnetError
 from lagnet.files import write_whole
 from validation.ablations import consulted_cases
 from validation.ablations.consulted_cases import Case, Posed
-from validation.ablations.consulted_summary import differences, summary, table
+from validation.ablations.consulted_summary import differences, slug, summary, table
 from validation.ablations.names_alone import NAMES_ALONE
 from validation.ablations.taken_out import taken_out
 from validation.ablations.watched import Effects, WatchedRule
@@ -112,7 +112,7 @@ def every_case(data: Path, home: Path, only: Sequence[str]) -> Iterator[Case]:
 def conduct(every: Iterator[Case], unproven: Unproven, home: Path) -> None:
     """Ask every case for what is not kept already."""
     for case in every:
-        file = home / case.kind / f"{re.sub('[^a-z0-9]+', '_', case.name)}.json"
+        file = home / case.kind / f"{slug(case.name)}.json"
         found = json.loads(file.read_text()) if file.exists() else {}
         if found and not open_rules(found, unproven(case.kind)):
             continue

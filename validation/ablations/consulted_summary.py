@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,14 +33,19 @@ def _counts(rule: str, cases: Kept) -> dict[str, int]:
 WHEN = ("at_any_point", "in_the_verdict")
 
 
-def differences(kept: Kept) -> list[dict[str, Any]]:
+def differences(kept: Kept) -> dict[str, dict[str, Any]]:
     """Cases whose names are others without a rule, with what is hidden and the ratio of held-out errors by joint."""
-    return [
-        {"rule": rule, "kind": case["kind"], "case": case["name"], "hidden": case["hidden"], **_difference(case, other)}
+    return {
+        f"{rule}__{case['kind']}__{slug(case['name'])}": {"hidden": case["hidden"], **_difference(case, other)}
         for case in kept
         for rule, other in case["without"].items()
         if {*other["names"]} != {*case["names"]}
-    ]
+    }
+
+
+def slug(name: str) -> str:
+    """A name as a key or a file's name."""
+    return re.sub("[^a-z0-9]+", "_", name)
 
 
 def _difference(case: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
