@@ -7,7 +7,8 @@ A figure stands between comments that say where it comes from and how it is writ
     <!-- figure real_arms arms.ur10e.nmse_corrected.0 .2g -->0.0049<!-- /figure -->
 
 the key path into `validation/real_arms/result.json` (numbers count through lists, `*` takes all of a list or table and
-joins them with commas, `max`, `min`, `median`, `len` after it reduces them), then a Python format.
+joins them with commas, `max`, `min`, `median`, `len` after it reduces them), then a Python format. Another result file
+of a study is told as `ablations/consulted` in the place of its name.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from typing import Any
 from marked_regions import DOCS, ROOT, write_or_check
 
 COMMAND = "python docs/fill_figures.py"
-FIGURE = re.compile(r"<!-- figure (\w+) (\S+) (\S+) -->.*?<!-- /figure -->", re.DOTALL)
+FIGURE = re.compile(r"<!-- figure ([\w/]+) (\S+) (\S+) -->.*?<!-- /figure -->", re.DOTALL)
 REDUCE: dict[str, Callable[[list[Any]], Any]] = {
     "max": max,
     "min": min,
@@ -69,11 +70,11 @@ def filled(text: str, where: str) -> str:
 
     def fill(found: re.Match[str]) -> str:
         study, path, form = found[1], found[2], found[3]
-        file = ROOT / "validation" / study / "result.json"
+        file = ROOT / "validation" / f"{study if '/' in study else f'{study}/result'}.json"
         try:
             value = lookup(json.loads(file.read_text(encoding="utf-8")), path.split("."))
         except (OSError, KeyError, IndexError, TypeError) as error:
-            raise ValueError(f"{where}: no {path} in validation/{study}/result.json ({error})") from None
+            raise ValueError(f"{where}: no {path} in {file.relative_to(ROOT)} ({error})") from None
         return f"<!-- figure {study} {path} {form} -->{written(value, form)}<!-- /figure -->"
 
     return FIGURE.sub(fill, text)

@@ -127,7 +127,7 @@ def draw_rivals(axes: Any, case: Case, result: Diagnosis) -> None:
 
 def draw_remainder(axes: Any, case: Case, result: Diagnosis) -> None:
     """What is left at the first joint over its strongest signal."""
-    entry = result.evidence.joints[0].leftover
+    entry = result.evidence.joints[0].remainder
     assert entry is not None, "nothing is left that a signal predicts"
     axes.plot(entry.value, entry.residual, ".", color=GREY, ms=2, label="residual on held-out samples")
     axes.plot(entry.curve[:, 0], entry.curve[:, 1], color=ORANGE, label="median over bins")

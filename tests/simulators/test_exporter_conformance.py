@@ -17,7 +17,7 @@ from lagnet.simulators.measured import measured_errors
 from lagnet.simulators.registry import EXPORTERS, exporter_named
 from lagnet.simulators.round_trips.reference_cases import CASES, case_values
 
-LASTING = {name for name, law in CATALOGUE.items() if not law.passing}
+LASTING = {name for name, law in CATALOGUE.items() if not law.is_transient}
 EXACT = 0.01  # of an effect's own contribution, the pass line of validation/round_trip
 
 
@@ -65,7 +65,7 @@ def test_what_passes_is_not_written(exporter, corrected: CorrectedModel) -> None
     assert exporter.place(brief).status == "not_representable"
     arm = arm_physics(corrected.with_effects([brief]))
     np.testing.assert_allclose(arm.robot.inertial_parameters(), corrected.nominal.inertial_parameters(), atol=1e-12)
-    assert arm.passing == (brief,)
+    assert arm.transient == (brief,)
 
 
 def test_layers_of_corrections_add_up(corrected: CorrectedModel) -> None:

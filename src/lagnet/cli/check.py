@@ -10,7 +10,8 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold
+from lagnet.cli.shared.robots import load_models
 from lagnet.errors import LagnetError
 
 
@@ -24,10 +25,8 @@ def command(
     recording: Annotated[
         list[Path] | None, typer.Option(help="What the robot did: sets the range of motion, and is held to the limits.")
     ] = None,
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
+    hold: Hold = None,
+    columns: Columns = None,
     vertical_base: Annotated[
         bool, typer.Option("--vertical-base", help="The first axis is vertical: check that its angle does not matter.")
     ] = False,

@@ -7,20 +7,17 @@ from typing import Annotated, Any
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold, TorqueConstant
+from lagnet.cli.shared.robots import load_models
 from lagnet.errors import LagnetError
 
 
 def command(
     recordings: Annotated[list[Path], typer.Argument(help="Recordings with torque, or of commands alone.")],
     robot: Annotated[list[str], typer.Option(help="A parameter set: URDF, MJCF, name or folder; repeatable.")],
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
+    hold: Hold = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
     actuator: Annotated[
         list[Path] | None,
         typer.Option(help="Servos (TOML) where commands alone were recorded: one for all sets, or one for each."),

@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold, TorqueConstant
+from lagnet.cli.shared.robots import load_models
+from lagnet.percent import percent
 
 
 def command(
@@ -21,13 +23,9 @@ def command(
     member: Annotated[
         list[str] | None, typer.Option(help="Further model of an ensemble, whose spread becomes a band; repeatable.")
     ] = None,
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
+    hold: Hold = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("decomposition"),
     seed: Annotated[int, typer.Option(help="Seed of the intervals.")] = 0,
 ) -> None:
@@ -51,5 +49,5 @@ def command(
     write_decomposition(parts, out)
     page = write_decomposition_report(parts, model, reference, out / "report.html")
     for joint, error, share in zip(parts.joints, parts.total_error.nmse, parts.shares["residual"], strict=True):
-        say(f"{joint}: nMSE of the total torque {error:.3g}, share of the residual {100 * share:.1f} %")
+        say(f"{joint}: nMSE of the total torque {error:.3g}, share of the residual {percent(share, 3)}")
     say(f"report: {page}")

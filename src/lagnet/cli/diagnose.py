@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold, TorqueConstant
+from lagnet.cli.shared.robots import load_models
 from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
@@ -29,13 +30,9 @@ def command(
     holdout: Annotated[
         list[Path] | None, typer.Option(help="Recordings that are not fitted; else the last fifth of each.")
     ] = None,
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
+    hold: Hold = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("diagnosis"),
     bandwidth: Annotated[
         float | None, typer.Option(help="Low-pass on torques [Hz]; else chosen from the data.")

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.cli.shared.options import Columns, ServoKd, ServoKp, TorqueConstant
 from lagnet.errors import LagnetError
+from lagnet.percent import percent
 
 if TYPE_CHECKING:
     from lagnet.simulators.export import Export
@@ -23,14 +25,10 @@ def command(
     verify: Annotated[
         list[Path] | None, typer.Option(help="Recordings to simulate in that engine (mjcf, pybullet).")
     ] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
-    kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
-    kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
+    kp: ServoKp = None,
+    kd: ServoKd = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
     from lagnet.cli.shared.console import numbers, say
@@ -99,5 +97,5 @@ def _words(exporter: str, effect: str, place: Place) -> str:
     from lagnet.simulators.measured import measured_errors
 
     measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
-    off = "".join(f", {100 * share:.3g} % off in {engine}" for engine, share in measured.items())
+    off = "".join(f", {percent(share, 3)} off in {engine}" for engine, share in measured.items())
     return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"

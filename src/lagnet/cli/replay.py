@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, load_models
+from lagnet.cli.shared.options import Columns, Hold, ServoKd, ServoKp, TorqueConstant
+from lagnet.cli.shared.robots import load_models
 from lagnet.errors import LagnetError
 
 
@@ -16,15 +17,11 @@ def command(
     robot: Annotated[str, typer.Option(help="A folder written by diagnose: before and after; or URDF, MJCF, name.")],
     engine: Annotated[str, typer.Option(help="mujoco or pybullet.")] = "mujoco",
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("replay"),
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
-    torque_constant: Annotated[
-        str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")
-    ] = None,
-    kp: Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")] = None,
-    kd: Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")] = None,
+    hold: Hold = None,
+    columns: Columns = None,
+    torque_constant: TorqueConstant = None,
+    kp: ServoKp = None,
+    kd: ServoKd = None,
     tolerance: Annotated[float, typer.Option(help="Error at which a rollout has left the recording [rad].")] = 0.05,
     longest: Annotated[float, typer.Option(help="Replay so much of each recording [s].")] = 30.0,
 ) -> None:

@@ -8,13 +8,14 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.robots import HELP, held_joints
+from lagnet.cli.shared.options import Hold
+from lagnet.cli.shared.robots import held_joints
 
 
 def command(
     robot: Annotated[str, typer.Option(help="Nominal model: URDF or MJCF path, or a name such as ur5.")],
     out: Annotated[Path, typer.Option(help="New folder to write recordings and truth.json to.")],
-    hold: Annotated[str | None, typer.Option(help=HELP)] = None,
+    hold: Hold = None,
     effects: Annotated[
         Path | None, typer.Option(help='TOML file of effects to add: [[effect]] name="..." joint="..." parameters.')
     ] = None,

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lagnet.cli.shared.options import Columns
+from lagnet.percent import percent
+
 if TYPE_CHECKING:
     from lagnet.training.settings import TrainingSettings
 
@@ -28,9 +31,7 @@ def command(
     steps: Annotated[
         int | None, typer.Option(help="Gradient steps; unlike minutes they give the same model again.")
     ] = None,
-    columns: Annotated[
-        Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")
-    ] = None,
+    columns: Columns = None,
     joint_types: Annotated[
         str | None, typer.Option(help="Comma-separated: continuous, revolute or prismatic for each joint.")
     ] = None,
@@ -73,7 +74,7 @@ def command(
         raise typer.Exit(INTERRUPTED)
     fit.model.save(out)
     for joint, error in zip(fit.model.joints, fit.stats.get("held_out_error") or (), strict=False):
-        say(f"{joint}: held-out torque error {100 * error:.3g} % of its variance")
+        say(f"{joint}: held-out torque error {percent(error, 3)} of its variance")
     say(f"model: {out}")
     if fit.stats.get("interrupted"):
         say("interrupted: the best model so far was kept; the same command goes on from there")

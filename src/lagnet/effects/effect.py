@@ -62,7 +62,7 @@ class Effect(ABC):
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[Stage] = "torque"
     absent: ClassVar[tuple[tuple[str, float], ...] | None] = None  # values without effect; None: first one at zero
-    passing: ClassVar[bool] = False  # True: acts on an interval, and is fitted to the residual of all others
+    is_transient: ClassVar[bool] = False  # True: acts on an interval, and is fitted to the residual of all others
     uses_measured_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
     uses_load: ClassVar[bool] = False  # True: after the body stage, its torque follows from the load of its joint
     plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it

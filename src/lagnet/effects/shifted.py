@@ -6,6 +6,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from lagnet.effects.motion import Motion
+from lagnet.recordings.sampling import median_step
 
 SETTLING = 0.04  # [s] over which a modelled torque is smoothed before it may bend a joint
 
@@ -36,5 +37,5 @@ def carried_torque(motion: Motion, joint: int) -> np.ndarray:
     """
     if motion.recorded is not None:
         return motion.recorded[:, joint]
-    step = float(np.median(np.diff(motion.time))) if motion.time.size > 1 else 1.0
+    step = median_step(motion.time)
     return gaussian_filter1d(motion.load[:, joint], SETTLING / max(step, 1e-6), mode="nearest")

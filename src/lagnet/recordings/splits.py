@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.errors import RecordingError
+from lagnet.percent import percent
 from lagnet.recordings.recording import Recording
 
 MIN_PART = 20  # samples of either side of a split below which nothing can be judged
@@ -57,7 +58,7 @@ def _cut(recording: Recording, fraction: float) -> tuple[Recording, Recording]:
     edge = int(starts[np.argmin(np.abs(starts - target))]) if starts.size else target
     if min(edge, len(recording) - edge) < MIN_PART:
         raise RecordingError(
-            f"{len(recording)} samples are too few to hold out {fraction:.0%} of them",
+            f"{len(recording)} samples are too few to hold out {percent(fraction)} of them",
             where=recording.path or None,
             next_step="give a separate recording to --holdout",
         )

@@ -28,7 +28,7 @@ from lagnet.reports.sections import (
     where,
     your_simulator,
 )
-from lagnet.reports.wording import counted, file_name
+from lagnet.reports.wording import compared
 
 # In order of reading. A new section is one file beside these, with its template, and one line here.
 SECTIONS: tuple[Callable[[Findings], Section | None], ...] = (
@@ -67,14 +67,4 @@ def write_report(
     """
     findings = Findings(verdict, evidence, replay)
     parts = [part for part in (build(findings) for build in SECTIONS) if part is not None]
-    return write_page(path, "Simulation against recordings", _subtitle(verdict), parts)
-
-
-def _subtitle(verdict: Mapping[str, Any]) -> str:
-    recordings = verdict["recordings"]
-    held_out = [recording for recording in recordings if recording["role"] == "holdout"]
-    seconds = sum(recording["duration_s"] for recording in recordings)
-    return (
-        f"{file_name(verdict['nominal']['source'])} against {counted(len(recordings), 'recording')} "
-        f"({seconds:.0f} s, {len(held_out)} held out)"
-    )
+    return write_page(path, "Simulation against recordings", compared(verdict), parts)

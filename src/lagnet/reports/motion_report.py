@@ -19,7 +19,7 @@ from lagnet.reports.sections import (
     parameters,
     where,
 )
-from lagnet.reports.wording import counted, file_name
+from lagnet.reports.wording import compared
 
 # In order of reading. A new section is one file beside these, with its template, and one line here.
 OF_MOTION: tuple[Callable[[Mapping[str, Any], MotionDiagnosis], Section | None], ...] = (
@@ -41,14 +41,4 @@ def write_motion_report(diagnosis: MotionDiagnosis, path: str | Path) -> Path:
     findings = Findings(verdict, ReportData())
     built = [build(verdict, diagnosis) for build in OF_MOTION] + [build(findings) for build in OF_VERDICT]
     parts = [part for part in built if part is not None]
-    return write_page(path, "Commands and motion", _subtitle(verdict), parts)
-
-
-def _subtitle(verdict: Mapping[str, Any]) -> str:
-    recordings = verdict["recordings"]
-    held_out = [recording for recording in recordings if recording["role"] == "holdout"]
-    seconds = sum(recording["duration_s"] for recording in recordings)
-    return (
-        f"{file_name(verdict['nominal']['source'])} against {counted(len(recordings), 'recording')} "
-        f"({seconds:.0f} s, {len(held_out)} held out), on motion"
-    )
+    return write_page(path, "Commands and motion", f"{compared(verdict)}, on motion", parts)

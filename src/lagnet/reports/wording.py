@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
+from typing import Any
 
 from markupsafe import Markup, escape
 
@@ -76,6 +78,17 @@ def counted(count: int, noun: str, plural: str | None = None) -> str:
 def file_name(path: str) -> str:
     """The last part of a path, of either kind of slash."""
     return re.split(r"[\\/]", path.rstrip("\\/"))[-1] or path
+
+
+def compared(verdict: Mapping[str, Any]) -> str:
+    """What a verdict compares: the file of the nominal model, and how many recordings of how long."""
+    recordings = verdict["recordings"]
+    held_out = [recording for recording in recordings if recording["role"] == "holdout"]
+    seconds = sum(recording["duration_s"] for recording in recordings)
+    return (
+        f"{file_name(verdict['nominal']['source'])} against {counted(len(recordings), 'recording')} "
+        f"({seconds:.0f} s, {len(held_out)} held out)"
+    )
 
 
 def shortened(name: str, width: int) -> str:

@@ -16,25 +16,20 @@ import numpy as np
 from numba import njit
 
 from lagnet.rollout.damper import explicit_share
+from lagnet.rollout.driven import between, drive_torque, load_at
 from lagnet.rollout.transmission import yields
 from lagnet.rollout.yielding_joint import FARTHEST, FINE, roll_yielding
 from lagnet.servos.command_delay import integral_at
-from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.friction import dry_friction, falls_with_speed
 from lagnet.servos.parameters import (
-    BACK_EMF,
     BIAS,
-    DEAD_BAND,
     DELAY,
-    KI,
     LOAD_GAIN,
     OFFSET,
     QUADRATIC,
     ROTOR,
     SPRING,
-    SPRING_REST,
     VISCOUS,
-    VOLTAGE_SHARE,
 )
 
 
@@ -119,25 +114,17 @@ def _roll_window(p, series, where, speed, step, out):  # pragma: no cover - comp
         span = time[n + 1] - time[n]
         pieces = max(1, ceil(span / step - 1e-9))
         h = span / pieces
-        r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n] - 1.0)
         before, k = integral_at(time[n] - p[DELAY], floor, last, k, time, command, integral)
         for i in range(pieces):
             x = (i + 0.5) / pieces
             after, k = integral_at(time[n] + (i + 1) * h - p[DELAY], floor, last, k, time, command, integral)
             u = (after - before) / h
             before = after
-            away = q - (measured[n] + x * (measured[n + 1] - measured[n]))
-            felt = load[n] + x * (load[n + 1] - load[n]) + (slope[n] + x * (slope[n + 1] - slope[n])) * away
-            felt = p[LOAD_GAIN] * felt + p[SPRING] * (q - p[SPRING_REST])
-            m = p[LOAD_GAIN] * (mass[n] + x * (mass[n + 1] - mass[n])) + p[ROTOR]
+            felt = load_at(p, q, between(x, measured, n), between(x, load, n), between(x, slope, n))
+            m = p[LOAD_GAIN] * between(x, mass, n) + p[ROTOR]
             error = u - q - p[BIAS]
-            torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
-            if enabled[n] > 0.5:
-                total += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
-                torque, stiff, damp = controller_torque(p, error, total, v, r, gain[n])
-                brake = p[BACK_EMF]
-            else:
-                total = 0.0
+            driven = drive_torque(p, error, total, v, ratio[n], gain[n], enabled[n], h)
+            torque, stiff, damp, brake, total = driven
             new = next_speed(p, v, m, torque + p[OFFSET], stiff + p[SPRING], damp, brake, felt, h)
             q += 0.5 * h * (v + new)
             v = new

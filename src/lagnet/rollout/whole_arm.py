@@ -16,19 +16,16 @@ from numba import njit
 
 from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.damper import explicit_share
+from lagnet.rollout.driven import drive_torque
 from lagnet.rollout.rigid_bodies import dynamics, workspace
 from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest, yields
 from lagnet.servos.command_delay import command_integral
-from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.friction import dry_friction, falls_with_speed
 from lagnet.servos.parameters import (
-    BACK_EMF,
     BIAS,
-    DEAD_BAND,
     DELAY,
     ENCODER_SIDE,
     GAP,
-    KI,
     LOAD_GAIN,
     OFFSET,
     QUADRATIC,
@@ -36,7 +33,6 @@ from lagnet.servos.parameters import (
     SPRING,
     SPRING_REST,
     VISCOUS,
-    VOLTAGE_SHARE,
 )
 
 FINE = 0.001  # [s] longest step where a motor is apart from its link
@@ -120,18 +116,13 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                 u = (after - before[j]) / h
                 before[j] = after
                 load[j] = p[LOAD_GAIN] * bias[j] + p[SPRING] * (q[j] - p[SPRING_REST])
-                torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
                 viscous = p[VISCOUS] + p[QUADRATIC] * abs(v[j])
                 at_motor = apart[j] and p[ENCODER_SIDE] <= 0.5
                 seen, seen_speed = (angle[j], w[j]) if at_motor else (q[j], v[j])
-                if enabled[n, j] > 0.5:
-                    error = u - seen - p[BIAS]
-                    total[j] += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
-                    r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n, j] - 1.0)
-                    torque, stiff, damp = controller_torque(p, error, total[j], seen_speed, r, gain[n, j])
-                    brake = p[BACK_EMF]
-                else:
-                    total[j] = 0.0
+                error = u - seen - p[BIAS]
+                torque, stiff, damp, brake, total[j] = drive_torque(
+                    p, error, total[j], seen_speed, ratio[n, j], gain[n, j], enabled[n, j], h
+                )
                 if apart[j]:
                     rows[j] = motor_row(p, w[j], v[j], torque, stiff, damp, brake, p[LOAD_GAIN] * mass[j, j], h)
                     motor[j] = torque - brake * w[j]

@@ -6,21 +6,17 @@ from math import ceil
 
 from numba import njit
 
+from lagnet.rollout.driven import between, drive_torque, load_at
 from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest
 from lagnet.servos.command_delay import integral_at
-from lagnet.servos.controller import controller_torque, outside_dead_band
 from lagnet.servos.parameters import (
-    BACK_EMF,
     BIAS,
-    DEAD_BAND,
     DELAY,
     ENCODER_SIDE,
     GAP,
-    KI,
     LOAD_GAIN,
     SPRING,
     SPRING_REST,
-    VOLTAGE_SHARE,
 )
 
 FINE = 0.002  # [s] longest step where motor and link are apart: contacts are short and springs quick
@@ -44,26 +40,18 @@ def roll_yielding(p, series, where, speed, step, out):  # pragma: no cover - com
         span = time[n + 1] - time[n]
         pieces = max(1, ceil(span / step - 1e-9))
         h = span / pieces
-        r = 1.0 + p[VOLTAGE_SHARE] * (ratio[n] - 1.0)
         before, k = integral_at(time[n] - p[DELAY], floor, last, k, time, command, integral)
         for i in range(pieces):
             x = (i + 0.5) / pieces
             after, k = integral_at(time[n] + (i + 1) * h - p[DELAY], floor, last, k, time, command, integral)
             u = (after - before) / h
             before = after
-            away = q - (measured[n] + x * (measured[n + 1] - measured[n]))
-            felt = load[n] + x * (load[n + 1] - load[n]) + (slope[n] + x * (slope[n + 1] - slope[n])) * away
-            felt = p[LOAD_GAIN] * felt + p[SPRING] * (q - p[SPRING_REST])
-            m = p[LOAD_GAIN] * (mass[n] + x * (mass[n + 1] - mass[n]))
+            felt = load_at(p, q, between(x, measured, n), between(x, load, n), between(x, slope, n))
+            m = p[LOAD_GAIN] * between(x, mass, n)
             seen, seen_speed = (q, v) if at_link else (angle, w)
             error = u - seen - p[BIAS]
-            torque, stiff, damp, brake = 0.0, 0.0, 0.0, 0.0
-            if enabled[n] > 0.5:
-                total += h * p[KI] * outside_dead_band(error, p[DEAD_BAND])
-                torque, stiff, damp = controller_torque(p, error, total, seen_speed, r, gain[n])
-                brake = p[BACK_EMF]
-            else:
-                total = 0.0
+            driven = drive_torque(p, error, total, seen_speed, ratio[n], gain[n], enabled[n], h)
+            torque, stiff, damp, brake, total = driven
             row = motor_row(p, w, v, torque, stiff, damp, brake, m, h)
             pull = m * v - h * (felt + 0.25 * h * p[SPRING] * v)
             a = m + 0.25 * h * h * p[SPRING]

@@ -64,7 +64,7 @@ class Exporter(ABC):
 
     def place(self, effect: NamedEffect) -> Place:
         """Where a named effect goes; what acts for a while only goes nowhere."""
-        if effect.interval is not None or effect.recording is not None or effect_named(effect.effect).passing:
+        if effect.interval is not None or effect.recording is not None or effect_named(effect.effect).is_transient:
             return PASSING
         return self.place_of_values(effect.effect, effect.values)
 

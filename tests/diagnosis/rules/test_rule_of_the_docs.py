@@ -22,7 +22,7 @@ REACH = 0.1  # [m] of the load's centre of mass off the last joint
 @pytest.fixture(scope="module")
 def example(tmp_path_factory) -> ModuleType:
     """The code blocks of the page, as one module."""
-    rule, use = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    rule, use, *_ = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     assert len(rule.splitlines()) <= LINES
     file = tmp_path_factory.mktemp("rule") / "heavier_than_arm.py"
     file.write_text(f"{rule}\n\n{use}", encoding="utf-8")

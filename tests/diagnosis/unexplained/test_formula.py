@@ -68,4 +68,4 @@ def test_unlisted_physics_is_told_with_its_signals(plant, arm) -> None:
     assert "v_2" in left.depends_on
     assert left.formula is not None
     assert "v_2" in left.formula
-    assert result.evidence.of(arm.joints[1]).ceiling_share > 0.5
+    assert result.evidence.of(arm.joints[1]).predictable_share > 0.5

@@ -1,4 +1,4 @@
-"""The ceiling knows what can be predicted, from what, and what can not."""
+"""The predictable share: what of a residual can be predicted, from what, and what cannot."""
 
 from __future__ import annotations
 

@@ -1,21 +1,11 @@
-"""Shares are written as a reader would say them."""
+"""Sentences of a verdict, and what they are told from."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, JointFit, NamedParameter
-from lagnet.diagnosis.verdict.wording import SELDOM_MET, percent, values, whole_error_words
-
-
-@pytest.mark.parametrize(
-    ("share", "words"),
-    [(2.5, "250 %"), (0.456, "46 %"), (0.0123, "1.2 %"), (0.00034, "0.034 %"), (3e-7, "less than 0.01 %")],
-)
-def test_a_share_is_a_percentage_without_a_power_of_ten(share: float, words: str) -> None:
-    assert percent(share) == words
+from lagnet.diagnosis.verdict.wording import SELDOM_MET, values, whole_error_words
 
 
 def test_a_sentence_tells_what_the_recordings_determine() -> None:

@@ -165,7 +165,7 @@ def diagnosis_of(joints: list[Joint], n: int = 12000, skeleton: Skeleton | None 
         ):
             if value:
                 verdict["effects"].append(effect_entry(name, joint.name, value, unit, share))
-    contests = tuple(
+    comparisons = tuple(
         Comparison(
             e["effect"], e["joint"], (("quadratic_drag", 61.2), ("time_delay", 118.0), ("stribeck_friction", 3.4))
         )
@@ -176,7 +176,7 @@ def diagnosis_of(joints: list[Joint], n: int = 12000, skeleton: Skeleton | None 
     )
     settings = {"seed": 0, "blocks": 8, "bandwidth_hz": BANDWIDTH, "limits": {"odds": 1.0, "share": 0.01}}
     evidence = ReportData(
-        entries, contests, skeleton, steps, settings, {"lagnet": "0.1.0", "numpy": "2.4.6"}, {"runs/fit_0.csv": SHA}
+        entries, comparisons, skeleton, steps, settings, {"lagnet": "0.1.0", "numpy": "2.4.6"}, {"runs/fit_0.csv": SHA}
     )
     return Case(verdict, evidence)
 

@@ -13,8 +13,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from lagnet.diagnosis.diagnose import Diagnosis
-from lagnet.diagnosis.verdict.wording import percent as verdict_percent
 from lagnet.diagnosis.writing import write_diagnosis
+from lagnet.percent import percent as verdict_percent
 from lagnet.recordings.conditioning.smoothing import SETTLING, SHORTEST, even_clock, low_pass, resample
 from lagnet.reports.diagnosis_report import write_report
 from lagnet.reports.wording import number, percent

@@ -158,7 +158,7 @@ def test_numbers_that_are_not_finite_do_not_break_the_page(six, tmp_path):
     measured = np.array(entry.held_out.measured)
     measured[10:20] = np.nan
     series = replace(entry.held_out, measured=measured)
-    evidence = ReportData((replace(entry, held_out=series, noise_rms=float("nan"), ceiling_share=float("nan")),))
+    evidence = ReportData((replace(entry, held_out=series, noise_rms=float("nan"), predictable_share=float("nan")),))
     page = write_report(six.verdict, evidence, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "joint-0-time" in figures_in(page)
 

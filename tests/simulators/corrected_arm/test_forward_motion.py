@@ -24,13 +24,13 @@ def corrected(*effects: tuple[str, int | None], slow: float = SHARP) -> Correcte
 
 
 def test_every_effect_that_lasts_has_a_forward_law() -> None:
-    lasting = {name for name, law in CATALOGUE.items() if not law.passing}
+    lasting = {name for name, law in CATALOGUE.items() if not law.is_transient}
     assert lasting == set(ADDED) | set(IN_BODIES)
 
 
 @pytest.mark.parametrize(
     "name",
-    [n for n, law in CATALOGUE.items() if law.instantaneous and not law.passing and n != "saturation"],
+    [n for n, law in CATALOGUE.items() if law.instantaneous and not law.is_transient and n != "saturation"],
 )
 def test_the_forward_law_gives_the_torque_of_the_catalogue(name: str) -> None:
     joint = None if CATALOGUE[name].whole_arm else 1

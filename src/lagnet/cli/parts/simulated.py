@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lagnet.cli.shared.console import say
+from lagnet.percent import percent
 
 if TYPE_CHECKING:
     from lagnet.recordings.recording import Recording
@@ -24,5 +25,5 @@ def nominal_from(
     read = [load_recording(path, columns=columns, torque_constant=constants) for path in paths]
     say(f"learning the simulator's arm from {len(read)} recordings")
     learned = learn_nominal(read, seed=seed)
-    say(f"learned as {learned.kind}; held-out error {100 * float(np.max(learned.share)):.2g} % at its worst joint")
+    say(f"learned as {learned.kind}; held-out error {percent(float(np.max(learned.share)))} at its worst joint")
     return learned.model, learned.error, read

@@ -9,6 +9,7 @@ import numpy as np
 
 from lagnet.recordings.conditioning.condition import condition, motion_at_samples
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.sampling import spread_rows
 from lagnet.types import InverseDynamics
 
 MOST = 4000  # samples that are compared
@@ -88,7 +89,7 @@ def effort_samples(
     y, q, v, a, error = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     n = len(y)
     block = np.minimum(np.arange(n) * BLOCKS // max(n, 1), BLOCKS - 1)
-    few = np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(int))
+    few = spread_rows(n, most)
     y, q, v, a, error, block = (x[few] for x in (y, q, v, a, error, block))
     gravity = robot.gravity_torque(q)
     dynamic = robot.inverse_dynamics(q, v, a) - gravity

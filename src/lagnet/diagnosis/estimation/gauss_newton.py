@@ -15,6 +15,7 @@ from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse_w
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+from lagnet.recordings.sampling import median_step
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end
@@ -52,7 +53,7 @@ def spread(pieces: Sequence[Segment], most: int = MOST_SAMPLES) -> tuple[Segment
 
 def blocks_of(problem: Problem, pieces: Sequence[Segment]) -> list[list[np.ndarray]]:
     """Rows of each block of time of each segment, long compared with the correlation time of the residual."""
-    rate = problem.rate / max(1, int(np.median(np.diff(pieces[0].keep))))
+    rate = problem.rate / max(1, int(median_step(pieces[0].keep)))
     length = max(8, int(BLOCK * rate / problem.bandwidth))
     counts = [max(1, round(p.keep.size / length)) for p in pieces]
     return [np.array_split(np.arange(p.keep.size), n) for p, n in zip(pieces, counts, strict=True)]

@@ -22,6 +22,7 @@ from lagnet.diagnosis.regression.normal_equations import inverse, normal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import EDGES, NamedEffect
 from lagnet.recordings.conditioning.smoothing import low_pass
+from lagnet.recordings.sampling import median_step
 
 Intervals = dict[str, tuple[float, float]]
 Linear = tuple[np.ndarray, np.ndarray]  # residuals and derivatives of a piece
@@ -144,7 +145,7 @@ def _views(
 
 
 def _slower(problem: Problem, keep: np.ndarray, x: np.ndarray) -> np.ndarray:
-    rate = problem.rate / max(1, int(np.median(np.diff(keep))))
+    rate = problem.rate / max(1, int(median_step(keep)))
     return low_pass(x.reshape(x.shape[0], -1), rate, NARROWER * problem.bandwidth).reshape(x.shape)
 
 

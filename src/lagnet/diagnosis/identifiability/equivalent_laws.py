@@ -27,7 +27,7 @@ def tie_equivalent_laws(
 
     Args:
         library: of the hypotheses.
-        contests: one for each named effect.
+        comparisons: one for each named effect.
         effects: the named effects, refitted.
     """
     values = {(e.effect, e.joint): e.values for e in effects}

@@ -19,6 +19,7 @@ from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
+from lagnet.recordings.sampling import spread_rows
 
 NOTHING = 1e-7  # of a joint's torque: a smaller term is zero
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
@@ -114,7 +115,7 @@ def _positive_definite(
     """
     model = CorrectedModel(problem.nominal, tuple(effects), problem.slow, straight=problem.straight)
     q = np.concatenate([p.q[p.keep] for p in problem.fit])
-    q = q[np.unique(np.linspace(0, len(q) - 1, POSES).round().astype(int))]
+    q = q[spread_rows(len(q), POSES)]
     while True:
         x = choice.ridge.x
         layer = _layer(design, x, rest)

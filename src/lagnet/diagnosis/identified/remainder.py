@@ -21,6 +21,7 @@ from jaxtyping import Array
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.remainder import LearnedRemainder, features
+from lagnet.recordings.sampling import spread_rows
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def learn_remainder(
     weights, biases = _train(x, target, valid, seed, settings)
     weights[-1], biases[-1] = weights[-1] * size, biases[-1] * size
     seen = x[moves]
-    anchors = seen[np.unique(np.linspace(0, len(seen) - 1, settings.anchors).round().astype(int))]
+    anchors = seen[spread_rows(len(seen), settings.anchors)]
     return LearnedRemainder(centre, spread, tuple(weights), tuple(biases), share, anchors, _reach(seen, anchors))
 
 

@@ -14,6 +14,7 @@ from lagnet.diagnosis.motion.sharpened_rates import sharpened_rates
 from lagnet.diagnosis.motion.smoothing import SMOOTHING, motion_rates
 from lagnet.errors import DiagnosisError
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.sampling import median_step
 from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.measured_load import measured_load
 from lagnet.rollout.one_joint import JointSeries, Windows
@@ -150,7 +151,7 @@ def pose_motion_problem(
         JointSeries(*(np.ascontiguousarray(rows[n] if n == "time" else rows[n][:, j]) for n in names))
         for j in range(parts[0][1].n_dof)
     )
-    step = float(np.clip(np.median(np.diff(parts[0][1].time)), 0.001, 0.005))
+    step = float(np.clip(median_step(parts[0][1].time), 0.001, 0.005))
     lines = tuple(duty_line(recordings, gains, j) for j in range(len(series)))
     return MotionProblem(
         recordings[0].joints, tree, series, runs, rows["speed"], start, step, greatest_duty(recordings), lines
@@ -175,7 +176,7 @@ def start_speed(part: Recording, before: Recording | None) -> np.ndarray:
     A motion that is cut in two goes on at the cut; smoothed over both sides, its speed is known there.
     """
     gap = np.inf if before is None else float(part.time[0] - before.time[-1])
-    sample = float(np.median(np.diff(part.time)))
+    sample = median_step(part.time)
     if before is None or not 0.0 < gap < 2.0 * sample:
         return np.zeros(part.n_dof)
     count = max(5, round(SMOOTHING / sample))
@@ -210,7 +211,7 @@ def _block(
     else:
         predicted = roll_out_arm(tree, laws, part.time, command, q[0], v0=v0, step=ROLLED, **signals)
         speed, acceleration = sharpened_rates(part.time, q, predicted)
-    stride = max(1, int(SLOPES / float(np.median(np.diff(part.time)))))
+    stride = max(1, int(SLOPES / median_step(part.time)))
     mass, load, slope = measured_load(tree, q, speed, acceleration, stride)
     return {
         "time": np.array(part.time),

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import savgol_filter
 
+from lagnet.recordings.sampling import median_step
+
 SMOOTHING = 0.16  # [s] stretch over which a cubic gives speed and acceleration
 
 
 def _length(time: np.ndarray) -> int:
-    half = max(2, round(0.5 * SMOOTHING / float(np.median(np.diff(time)))))
+    half = max(2, round(0.5 * SMOOTHING / median_step(time)))
     return min(2 * half + 1, len(time) - 1 + len(time) % 2)
 
 

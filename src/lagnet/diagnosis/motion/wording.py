@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import exp
 
 from lagnet.diagnosis.verdict.verdict import NamedParameter
+from lagnet.percent import percent
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 RATIOS = {"N m": "rad", "N m/rad": "", "N m s/rad": "s", "kg m²": "s²", "N m s²/rad²": "s²/rad"}
@@ -26,7 +28,7 @@ def explain_effect(
         for p in parameters
     )
     text = f"{law.title} at {joint}, {law.formula} with {shown}: without it errors of position on motion that was not "
-    text += f"fitted are {100.0 * (2.718281828**gain - 1.0):.0f} % larger."
+    text += f"fitted are {percent(exp(gain) - 1.0)} larger."
     if tied:
         names = " or ".join(t.replace("_", " ") for t in tied)
         text += f" These recordings cannot tell it from {names}. What would: a recording that {separating(name, tied)}."

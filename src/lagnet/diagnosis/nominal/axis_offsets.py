@@ -22,6 +22,7 @@ from lagnet.models.serial_chain.model import SerialChain
 from lagnet.models.serial_chain.open_shape import OpenShape
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.sampling import spread_rows
 
 SAMPLES = 1_000
 STARTS = 3
@@ -123,7 +124,7 @@ def _own_columns(motion: Motion) -> list[np.ndarray]:
 def _samples(problem: Problem, pieces: tuple[Segment, ...]) -> Motion:
     """Samples from all over the pieces."""
     seen = replace(problem, fit=pieces).summary()
-    rows = np.unique(np.linspace(0, len(seen.q) - 1, SAMPLES).round().astype(int))
+    rows = spread_rows(len(seen.q), SAMPLES)
     assert seen.recorded is not None
     time, q, v, a, load = (x[rows] for x in (seen.time, seen.q, seen.v, seen.a, seen.load))
     return Motion(time, q, v, a, load, seen.slow, seen.model, seen.recorded[rows], straight=seen.straight)

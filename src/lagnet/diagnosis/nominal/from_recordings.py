@@ -10,6 +10,7 @@ import numpy as np
 
 from lagnet.models.serial_chain.settings import SearchSettings, SerialChainSettings
 from lagnet.recordings.recording import Recording
+from lagnet.recordings.sampling import spread_rows
 from lagnet.recordings.splits import holdout_split
 
 EXACT = 1e-3  # held-out share of the torque variance up to which a serial chain is taken to be the simulator's arm
@@ -106,7 +107,7 @@ def _moving(v: np.ndarray) -> np.ndarray:
 
 def _spread(rows: np.ndarray) -> np.ndarray:
     """At most so many of the rows, from all over them."""
-    return rows[np.unique(np.linspace(0, rows.size - 1, MOST_SAMPLES).round().astype(int))]
+    return rows[spread_rows(rows.size, MOST_SAMPLES)]
 
 
 def _held_out(model: Any, unseen: Sequence[Recording]) -> tuple[np.ndarray, np.ndarray]:

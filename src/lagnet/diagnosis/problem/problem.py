@@ -16,6 +16,7 @@ from lagnet.models.corrected.model import torque_along
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import Conditioned, Stretch
 from lagnet.recordings.conditioning.smoothing import SETTLING, low_pass
+from lagnet.recordings.sampling import spread_rows
 from lagnet.types import InverseDynamics
 
 OVERSAMPLING = 2.5  # reduced samples per second over the bandwidth: Nyquist with room for the filter's slope
@@ -250,4 +251,4 @@ def spread_evenly(pieces: Sequence[Segment], most: int) -> tuple[Segment, ...]:
     if total <= most:
         return tuple(pieces)
     wanted = max(1, int(len(pieces) * most / total))
-    return tuple(pieces[i] for i in np.unique(np.linspace(0, len(pieces) - 1, wanted).round().astype(int)))
+    return tuple(pieces[i] for i in spread_rows(len(pieces), wanted))

@@ -243,7 +243,7 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
     hypotheses: list[Hypothesis] = []
     widths: list[int] = []
     abstentions: list[Abstention] = []
-    for effect in effects or tuple(e for e in CATALOGUE.values() if not e.passing):
+    for effect in effects or tuple(e for e in CATALOGUE.values() if not e.is_transient):
         if effect.is_body and problem.given is not None:  # the links are free already
             continue
         for joint in _places(effect, problem.n_dof):

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lagnet.recordings.sampling import spread_rows
+
 TERMS = 3  # that are taken together at most
 ROWS = 3_000  # samples that they are chosen on
 BETTER = 0.02  # of the residual's power that a term must explain
@@ -23,7 +25,7 @@ def sparse_share(
         seen, unseen: shape (n, k), (m, k), signals.
         rest, test: shape (n,), (m,), residual of one joint [N m].
     """
-    rows = np.unique(np.linspace(0, len(rest) - 1, min(ROWS, len(rest))).round().astype(int))
+    rows = spread_rows(len(rest), ROWS)
     scale = np.maximum(np.abs(seen).max(axis=0), 1e-12)
     labels, table = _table(names, seen[rows] / scale)
     chosen = _chosen(table, rest[rows])

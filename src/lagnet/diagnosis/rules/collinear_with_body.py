@@ -18,6 +18,7 @@ from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.selection.arm_search import Selection, noticeable, refit_selection, views_of
 from lagnet.diagnosis.selection.joint_search import JointView
+from lagnet.percent import percent
 
 Local = tuple[tuple[int, ...], ...]
 
@@ -49,7 +50,7 @@ class CollinearWithBody(RejectionRule):
 
     def _rejection(self, candidate: Candidate, index: int, view: JointView) -> Rejection:
         share = _share(view, candidate.selection.local[view.joint], index)
-        detail = f"beside the bodies it explains {100.0 * share:.2g} % of its joint, and without it hardly more is left"
+        detail = f"beside the bodies it explains {percent(share)} of its joint, and without it hardly more is left"
         return self.rejection(candidate, index, share, self.least_share, detail)
 
     def _kept(self, equations: NormalEquations, best: Selection) -> Local:

@@ -23,6 +23,7 @@ from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
 from lagnet.diagnosis.unexplained.predictability import predictability_of, signals_of
 from lagnet.diagnosis.unexplained.remainder import every_second_part
+from lagnet.percent import percent
 
 Shares = dict[int, float]
 """By joint, a share of its mismatch."""
@@ -92,7 +93,7 @@ class LackOfFit(RejectionRule):
         at = max(part.at_joints, key=lambda j: part.shares[j] - least[j])
         share, joint = float(part.shares[at]), candidate.problem.joints[at]
         if not any(part.shares[j] >= least[j] for j in part.at_joints):
-            detail = f"it explains {100 * share:.3g} % of {joint}, where more than {100 * least[at]:.3g} % is asked for"
+            detail = f"it explains {percent(share, 3)} of {joint}, where more than {percent(least[at], 3)} is asked for"
             return self.rejection(candidate, index, share, float(least[at]), detail)
         if h.place in doubtful and not outshines(part, self.stands, held, fitted):
             detail = (

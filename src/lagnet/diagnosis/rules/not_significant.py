@@ -32,11 +32,11 @@ class NotSignificant(RejectionRule):
             return ()
         errors = interval_errors(candidate.problem, effects, candidate.sigma)
         wide = [widened(*pair) for pair in zip(candidate.refit.intervals, errors, strict=True)]
-        unsure = [n for n, e in enumerate(effects) if not effect_named(e.effect).is_determined(wide[n])]
-        if not unsure:
+        not_determined = [n for n, e in enumerate(effects) if not effect_named(e.effect).is_determined(wide[n])]
+        if not not_determined:
             return ()
         sizes = NegligibleTorque.sizes(candidate.problem, effects)
-        return tuple(self._rejection(candidate, n, wide[n]) for n in sorted(unsure, key=lambda n: sizes[n]))
+        return tuple(self._rejection(candidate, n, wide[n]) for n in sorted(not_determined, key=lambda n: sizes[n]))
 
     def _rejection(self, candidate: Candidate, n: int, interval: dict[str, tuple[float, float]]) -> Rejection:
         (name, absent), *_ = effect_named(candidate.effects[n].effect).absence

@@ -104,17 +104,17 @@ def _caution(fit: EventFit, inflation: float) -> float:
     return float(np.sqrt(0.5 * OVERSAMPLING * inflation * max(1.0, fit.over_usual)))
 
 
-def _shares(problem: Problem, persistent: Sequence[NamedEffect], passing: Sequence[NamedEffect]) -> list[float]:
+def _shares(problem: Problem, persistent: Sequence[NamedEffect], transient: Sequence[NamedEffect]) -> list[float]:
     """Power that each explains, over that of the nominal residual, joints weighted by their torque."""
     nominal = _power(problem, ())
-    with_all = _power(problem, (*persistent, *passing))
+    with_all = _power(problem, (*persistent, *transient))
     return [
         float(
             np.clip(
-                (_power(problem, (*persistent, *(p for p in passing if p is not e))) - with_all) / nominal, 0.0, 1.0
+                (_power(problem, (*persistent, *(p for p in transient if p is not e))) - with_all) / nominal, 0.0, 1.0
             )
         )
-        for e in passing
+        for e in transient
     ]
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.recordings.sampling import median_step
 
 LEAST_LIFT = 1.3  # residual power in a regime over that overall, below which the regime is not reported
 MOST_REGIMES = 4
@@ -114,5 +115,5 @@ def near_reversal(piece: Segment, joint: int) -> np.ndarray:
     turns = np.flatnonzero(np.diff(np.sign(v)) != 0)
     marks = np.zeros(v.size)
     marks[turns] = 1.0
-    width = max(1, round(AFTER_REVERSAL / max(1e-9, float(np.median(np.diff(piece.time))))))
+    width = max(1, round(AFTER_REVERSAL / max(1e-9, median_step(piece.time))))
     return np.convolve(marks, np.ones(2 * width + 1), mode="same") > 0

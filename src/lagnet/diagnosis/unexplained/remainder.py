@@ -54,12 +54,12 @@ class JointRemainder:
 
     Args:
         size: how much it is.
-        ceiling: how much of it any smooth function predicts; nothing where it is noise.
+        predictability: how much of it any smooth function predicts; nothing where it is noise.
         shape: how it looks against its strongest signal; None where it is noise or nothing predicts it.
     """
 
     size: RemainderSize
-    ceiling: Predictability
+    predictability: Predictability
     shape: RemainderShape | None
 
 
@@ -139,10 +139,10 @@ def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
 def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
     (residual, valid), (test, test_valid) = after.fit, after.holdout
     seen, truth = residual[:, joint], test[:, joint] * test_valid[:, joint]
-    ceiling = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
+    predictability = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
     shape = None
-    if ceiling.depends_on:
+    if predictability.depends_on:
         signals = (after.seen.only(valid[:, joint]), after.unseen.only(test_valid[:, joint]))
         residuals = (seen[valid[:, joint]], test[test_valid[:, joint], joint])
-        shape = find_shape(signals, residuals, ceiling.depends_on, slow)
-    return ceiling, shape
+        shape = find_shape(signals, residuals, predictability.depends_on, slow)
+    return predictability, shape

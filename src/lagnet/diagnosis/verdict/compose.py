@@ -145,7 +145,7 @@ def _effect(state: DiagnosisState, n: int, comparison: Comparison, evidence: Eff
 
 def _unexplained(state: DiagnosisState, joint: int) -> Unexplained:
     problem, remainder = state.problem, state.remainders[joint]
-    depends_on = remainder.ceiling.depends_on
+    depends_on = remainder.predictability.depends_on
     if remainder.size.above and "time" not in depends_on and changes_in_time(state, joint):
         depends_on = ("time", *depends_on)
     formula = remainder.shape.formula if remainder.shape else None

@@ -82,9 +82,9 @@ class JointEvidence:
         residual: residual against velocity.
         law: the fitted friction law.
         noise_rms: estimated noise of the torque residual [unit].
-        ceiling_share: predictable share of the remainder, R² of a smooth function of state and short history on
+        predictable_share: predictable share of the remainder, R² of a smooth function of state and short history on
             held-out motion, 0 to 1; None where the remainder is noise.
-        leftover: the remainder against the signal that predicts it best.
+        remainder: the remainder against the signal that predicts it best.
     """
 
     joint: str
@@ -93,8 +93,8 @@ class JointEvidence:
     residual: ResidualByVelocity | None = None
     law: FrictionLaw | None = None
     noise_rms: float | None = None
-    ceiling_share: float | None = None
-    leftover: RemainderShape | None = None
+    predictable_share: float | None = None
+    remainder: RemainderShape | None = None
 
     @property
     def velocity_unit(self) -> str:

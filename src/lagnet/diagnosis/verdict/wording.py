@@ -8,13 +8,13 @@ from lagnet.diagnosis.estimation.gauss_newton import NOT_SAID
 from lagnet.diagnosis.identifiability.recording_advice import recording_against
 from lagnet.diagnosis.verdict.verdict import EffectEvidence, EffectFound, JointFit, NamedParameter
 from lagnet.effects.effect import Effect
+from lagnet.percent import percent
 from lagnet.recordings.conditioning.condition import Conditioned
 
 MOST_PARAMETERS = 4  # that a sentence lists
 WIDEST = 30.0  # half widths of an interval that holds zero, over the value: beyond, the value says nothing
 LEAST_VALUE = 0.1  # in any unit: a value near zero with a narrow interval is told, too
 ALIKE = 1.5  # times one error that another is at most, to be told as the same
-LEAST_PERCENT = 0.01  # that is written as a number
 BESIDE_FREE_LINKS = (
     "several links differ from the model: no few bodies that can exist explain this motion. Causes were judged beside "
     "the inertial parameters of all links as these recordings determine them; these parameters stand in the identified "
@@ -111,14 +111,6 @@ def whole_error_words(effect: EffectFound, fits: Sequence[JointFit], beside_link
     if left == percent(told) or told < ALIKE * worst.nmse_named < ALIKE**2 * told:
         return ""
     return f" Over all held-out samples, rest included, {named} leaves {left} there."
-
-
-def percent(share: float) -> str:
-    """A share as a percentage with two significant digits, and no power of ten."""
-    value = 100.0 * share
-    if value >= 10.0:
-        return f"{value:.0f} %"
-    return f"{value:.2g} %" if value >= LEAST_PERCENT else f"less than {LEAST_PERCENT:g} %"
 
 
 def advice(law: Effect, joint: str | None) -> str:

@@ -33,7 +33,7 @@ class ContactForce(Effect):
     )
     whole_arm = True
     reaches_all = True
-    passing = True
+    is_transient = True
     stage = "body"
     needs_bodies = True
     shown_by = "motion before and after the contact, with the same load"

@@ -8,6 +8,7 @@ import numpy as np
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_position_range
 from lagnet.effects.motion import Motion
+from lagnet.recordings.sampling import median_step
 
 PER_TURN = (2.0, 400.0)  # periods per radian that are tried at all
 RESOLUTION = 0.35  # step of the scan, in periods over the range of the joint
@@ -40,7 +41,7 @@ class TorqueRipple(Effect):
         reach = float(np.ptp(q))
         if reach <= 0 or needs_position_range(motion, joint):
             return ()
-        step = np.median(np.diff(motion.time))
+        step = median_step(motion.time)
         seen = np.quantile(v, 0.3) * step  # of position between samples, when the joint is slow
         highest = min(PER_TURN[1], np.pi / max(seen, 1e-9))
         lowest = max(PER_TURN[0], 2.0 * 2.0 * np.pi / reach)

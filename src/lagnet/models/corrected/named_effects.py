@@ -12,6 +12,7 @@ from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.models.corrected.tilted_bodies import tilted_weight
+from lagnet.recordings.sampling import median_step
 from lagnet.types import Trajectory
 
 EDGES = ("t0", "t1")  # start and end of an effect on an interval
@@ -83,7 +84,7 @@ def passing(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
 
 def _inside(time: np.ndarray, interval: tuple[float, float]) -> np.ndarray:
     """1 from t0 to t1, shape (n,), falling to 0 over one sample outside: a slope makes t0 and t1 differentiable."""
-    step = float(np.median(np.diff(time))) if time.size > 1 else 1.0
+    step = median_step(time)
     since_start, since_end = ((time - edge) / step for edge in interval)
     return np.clip(since_start + 1.0, 0.0, 1.0) * np.clip(1.0 - since_end, 0.0, 1.0)
 

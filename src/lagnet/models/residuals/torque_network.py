@@ -1,4 +1,4 @@
-"""A perceptron from (q, v, a) to torque: the whole model in an FFNN, the leftover ε in DeLaN-FFNN."""
+"""A perceptron from (q, v, a) to torque: the whole model in an FFNN, the remainder ε in DeLaN-FFNN."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lagnet.percent import percent
 from lagnet.plausibility.check import Check, Finding, NotApplicable
 from lagnet.plausibility.search import worst_configuration
 from lagnet.plausibility.subject import Subject
@@ -46,7 +47,7 @@ class ResidualDissipates(Check):
         worst, where = worst_configuration(subject, "qva", lambda q, v, a: -(_power(subject, q, v, a)[:, joint]))
         drives = float(np.mean(power[:, joint] < 0))
         detail = (
-            f"residual of {subject.joints[joint]} drives in {100 * drives:.0f} % of the samples, "
+            f"residual of {subject.joints[joint]} drives in {percent(drives)} of the samples, "
             f"with up to {max(worst.value, 0.0):.3g} W; net share of the power ε·v that it takes out"
         )
         return Finding(float(share[joint]), {"joint": subject.joints[joint], **where}, detail)

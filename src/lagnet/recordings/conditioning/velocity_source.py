@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.percent import percent
 from lagnet.recordings.conditioning.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
 from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.recording import Recording
@@ -68,8 +69,8 @@ def _disagreement(recording: Recording, off: np.ndarray | None) -> str:
         return f"no stretch{where} is long enough to compare recorded speeds with positions"
     worst = int(np.argmax(off))
     return (
-        f"the recorded speed of {recording.joints[worst]}{where} is {100 * off[worst]:.2g} % off the rate at which the"
-        f" position changes (at most {100 * DISAGREEMENT:.0f} %)"
+        f"the recorded speed of {recording.joints[worst]}{where} is {percent(off[worst])} off the rate at which the"
+        f" position changes (at most {percent(DISAGREEMENT)})"
     )
 
 

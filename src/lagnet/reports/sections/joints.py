@@ -39,7 +39,7 @@ def _panel(findings: Findings, index: int, joint: str) -> dict[str, Any]:
         "fit": findings.fit(joint),
         "mismatch": findings.mismatch(joint),
         "unit": evidence.unit,
-        "ceiling": evidence.ceiling_share,
+        "predictable": evidence.predictable_share,
         "effects": findings.effects_on(joint),
         **figures,
     }

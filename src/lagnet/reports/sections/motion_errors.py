@@ -9,6 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.motion.problem import motion_rates
+from lagnet.recordings.sampling import median_step
 from lagnet.reports.figures.figure import Figure, axis, colour, packed
 from lagnet.reports.page import Section, section
 
@@ -38,7 +39,7 @@ def build(verdict: Mapping[str, Any], diagnosis: MotionDiagnosis) -> Section:
 
 def _command_step(command: np.ndarray, time: np.ndarray, span: float = 0.3) -> np.ndarray:
     """Range of the command over the last `span` seconds, shape (n, dof)."""
-    count = max(2, round(span / float(np.median(np.diff(time)))))
+    count = max(2, round(span / median_step(time)))
     padded = np.vstack([np.repeat(command[:1], count - 1, axis=0), command])
     windows = np.lib.stride_tricks.sliding_window_view(padded, count, axis=0)
     return windows.max(axis=2) - windows.min(axis=2)

@@ -12,29 +12,29 @@ from lagnet.reports.page import Section, section
 from lagnet.reports.wording import effect_words, number, wrapped
 
 TICKS = (-1000, -100, -10, -3, -1, 0, 1, 3, 10, 30, 100, 300, 1000, 3000)
-Best = tuple[Comparison, str, float]  # a contest with its strongest rival and the odds over it
+Best = tuple[Comparison, str, float]  # a comparison with its strongest rival and the odds over it
 
 
 def build(findings: Findings) -> Section | None:
     """Bars of log10 odds; what comes close to zero cannot be told apart."""
-    contests = [contest for contest in _contests(findings) if contest.rivals]
-    if not contests:
+    comparisons = [comparison for comparison in _comparisons(findings) if comparison.rivals]
+    if not comparisons:
         return None
-    best = [(contest, *min(contest.rivals, key=lambda rival: rival[1])) for contest in contests]
+    best = [(comparison, *min(comparison.rivals, key=lambda rival: rival[1])) for comparison in comparisons]
     tied = {(effect["effect"], effect["joint"]) for effect in findings.effects if effect["status"] == "tied"}
-    rows = [(contest, *rival) for contest in contests for rival in contest.rivals]
+    rows = [(comparison, *rival) for comparison in comparisons for rival in comparison.rivals]
     return section(
         "rivals",
         "Evidence against rivals",
         [_figure(best, tied)],
         rows=[{"effect": c.effect, "place": place(c.joint), "rival": rival, "odds": odds} for c, rival, odds in rows],
         any_tied=bool(tied),
-        more=len(rows) > len(contests),
+        more=len(rows) > len(comparisons),
     )
 
 
-def _contests(findings: Findings) -> list[Comparison]:
-    """The contests of the evidence, or, without it, each effect against the best rival that the verdict names."""
+def _comparisons(findings: Findings) -> list[Comparison]:
+    """The comparisons of the evidence, or, without it, each effect against the best rival that the verdict names."""
     if findings.evidence.comparisons:
         return list(findings.evidence.comparisons)
     best = ((effect, effect["evidence"]) for effect in findings.effects)
@@ -50,9 +50,9 @@ def _contests(findings: Findings) -> list[Comparison]:
 def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
     words = [_words(*row) for row in best]
     labels = ["<br>".join(plain(line) for line in lines) for lines in words]
-    named = [(contest.effect, contest.joint) not in tied for contest, *_ in best]
+    named = [(comparison.effect, comparison.joint) not in tied for comparison, *_ in best]
     traces = [_bars(labels, [odds for *_, odds in best], named), _others(labels, best)]
-    reach = [odds for contest, *_ in best for _, odds in contest.rivals]
+    reach = [odds for comparison, *_ in best for _, odds in comparison.rivals]
     zero = {"type": "line", "x0": 0, "x1": 0, "yref": "paper", "y0": 0, "y1": 1}
     layout = {
         "yaxis": names_axis(autorange="reversed", categoryorder="array", categoryarray=labels),
@@ -65,8 +65,8 @@ def _figure(best: list[Best], tied: set[tuple[str, str | None]]) -> Figure:
     return Figure("rival-bars", traces, "log10 odds of each effect over its rivals", layout, height)
 
 
-def _words(contest: Comparison, rival: str, _: float) -> list[str]:
-    effect = wrapped(f"{effect_words(contest.effect)} on {place(contest.joint)}", 30)
+def _words(comparison: Comparison, rival: str, _: float) -> list[str]:
+    effect = wrapped(f"{effect_words(comparison.effect)} on {place(comparison.joint)}", 30)
     return [*effect, f"over {effect_words(rival)}"]
 
 
@@ -84,8 +84,8 @@ def _others(labels: list[str], best: list[Best]) -> Trace:
     """The weaker rivals, as marks on the same line."""
     marks = [
         (label, rival, odds)
-        for label, (contest, strongest, _) in zip(labels, best, strict=True)
-        for rival, odds in contest.rivals
+        for label, (comparison, strongest, _) in zip(labels, best, strict=True)
+        for rival, odds in comparison.rivals
         if rival != strongest
     ]
     return {

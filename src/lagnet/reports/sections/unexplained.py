@@ -6,14 +6,14 @@ from typing import Any
 
 from lagnet.reports.contents.findings import Findings
 from lagnet.reports.figures.figure import Figure
-from lagnet.reports.figures.leftover_figures import formula_words, leftover_by_signal
+from lagnet.reports.figures.remainder_figures import formula_words, remainder_by_signal
 from lagnet.reports.page import Section, section
 
 PICTURES = 3  # joints with a picture: those with most left
 
 
 def build(findings: Findings) -> Section | None:
-    """One row a joint; the ceiling tells how much of what is left anything could predict at all."""
+    """One row a joint; the predictable share tells how much of the remainder anything could predict at all."""
     rows = [_row(findings, entry) for entry in findings.verdict["unexplained"]]
     if not rows or not findings.verdict["mismatch"]["found"]:
         return None
@@ -30,7 +30,7 @@ def build(findings: Findings) -> Section | None:
 
 def _row(findings: Findings, entry: dict[str, Any]) -> dict[str, Any]:
     evidence = findings.evidence_on(entry["joint"])
-    return {**entry, "ceiling": evidence.ceiling_share, "words": formula_words(evidence)}
+    return {**entry, "predictable": evidence.predictable_share, "words": formula_words(evidence)}
 
 
 def _pictures(findings: Findings, rows: list[dict[str, Any]]) -> list[tuple[dict[str, Any], Figure]]:
@@ -39,7 +39,7 @@ def _pictures(findings: Findings, rows: list[dict[str, Any]]) -> list[tuple[dict
     drawn = []
     for row in ranked:
         key = f"left-{findings.joints.index(row['joint'])}" if row["joint"] in findings.joints else "left"
-        figure = leftover_by_signal(key, findings.evidence_on(row["joint"]), sliding)
+        figure = remainder_by_signal(key, findings.evidence_on(row["joint"]), sliding)
         if figure is not None:
             drawn.append((row, figure))
     return drawn[:PICTURES]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import CensoredData, ecdf
 
+from lagnet.recordings.sampling import median_step
 from lagnet.reports.contents.findings import Findings
 from lagnet.reports.contents.replay_data import ReplayData
 from lagnet.reports.figures.decimation import extremes
@@ -81,7 +82,7 @@ def _overlay(data: ReplayData, rows: np.ndarray, index: int) -> Figure:
 def _over_time(data: ReplayData, rows: np.ndarray) -> Figure:
     """Root mean square over joints and half a second."""
     time, joints = data.time[rows], range(len(data.joints))
-    width = max(1, round(SMOOTH / max(float(np.median(np.diff(time))), 1e-9)))
+    width = max(1, round(SMOOTH / max(median_step(time), 1e-9)))
     measured = [data.signal("q_measured", i, rows) for i in joints]
     traces: list[Trace] = []
     for side in data.sides:

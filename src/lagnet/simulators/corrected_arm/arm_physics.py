@@ -83,7 +83,7 @@ class ArmPhysics:
         stribeck, ripples, couplings, bristles: terms at single joints.
         drives: what lies between a commanded torque and the joint, one for each joint.
         blur: shape (dof,), speed within which the recordings did not tell the sign of the motion [rad/s].
-        passing: effects that belong to an interval or to one recording, and so to no simulator.
+        transient: effects that belong to an interval or to one recording, and so to no simulator.
         identified: parts of identified layers; those that act like a named effect are in the numbers above.
     """
 
@@ -105,7 +105,7 @@ class ArmPhysics:
     bristles: tuple[BristleTerm, ...]
     drives: tuple[Drive, ...]
     blur: JointVector
-    passing: tuple[NamedEffect, ...] = ()
+    transient: tuple[NamedEffect, ...] = ()
     identified: tuple[IdentifiedPart, ...] = ()
 
     @property
@@ -155,12 +155,14 @@ def arm_physics(model: Robot | CorrectedModel) -> ArmPhysics:
             f"a model of kind {getattr(nominal, 'kind', type(nominal).__name__)} has no bodies to export",
             next_step="diagnose against a URDF or MJCF, or export a model with bodies",
         )
-    lasting = [e for e in effects if e.interval is None and e.recording is None and not effect_named(e.effect).passing]
-    passing = tuple(e for e in effects if e not in lasting)
+    persistent = [
+        e for e in effects if e.interval is None and e.recording is None and not effect_named(e.effect).is_transient
+    ]
+    transient = tuple(e for e in effects if e not in persistent)
     armature = np.array(nominal.armature)
-    bodies = cast(Robot, apply_to_bodies(nominal, [e for e in lasting if e.effect in IN_BODIES]))
-    arm = _bare(bodies.with_armature(np.zeros(bodies.n_dof)), armature, blur, passing)
-    for effect in lasting:
+    bodies = cast(Robot, apply_to_bodies(nominal, [e for e in persistent if e.effect in IN_BODIES]))
+    arm = _bare(bodies.with_armature(np.zeros(bodies.n_dof)), armature, blur, transient)
+    for effect in persistent:
         if effect.effect not in IN_BODIES:
             arm = ADDED[effect.effect](arm, effect.joint, effect.values)
     for layer in _identified_layers(model):
@@ -209,7 +211,7 @@ def _flattened(model: Any) -> tuple[Any, list[NamedEffect], JointVector | None]:
     return nominal, [*effects, *model.effects], model.slow
 
 
-def _bare(robot: Robot, rotor: JointVector, blur: JointVector | None, passing: tuple[NamedEffect, ...]) -> ArmPhysics:
+def _bare(robot: Robot, rotor: JointVector, blur: JointVector | None, transient: tuple[NamedEffect, ...]) -> ArmPhysics:
     n = robot.n_dof
     zero = [np.zeros(n) for _ in range(8)]
     rigid = np.full(n, np.inf)
@@ -217,7 +219,7 @@ def _bare(robot: Robot, rotor: JointVector, blur: JointVector | None, passing: t
     blurred = np.zeros(n) if blur is None else np.asarray(blur, dtype=float)
     shift, viscous, quadratic, forward, backward, load, stiffness, rest = zero
     fields = (shift, rotor, viscous, quadratic, forward, backward, load, stiffness, rest, rigid, np.zeros(n))
-    return ArmPhysics(robot, *fields, (), (), (), (), drives, blurred, passing)
+    return ArmPhysics(robot, *fields, (), (), (), (), drives, blurred, transient)
 
 
 def _plus(vector: np.ndarray, joint: int | None, value: float) -> np.ndarray:

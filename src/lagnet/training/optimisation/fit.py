@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array
 
 from lagnet.models.dynamics import AbstractDynamics
+from lagnet.recordings.sampling import spread_rows
 from lagnet.training.checkpoint import read_checkpoint, write_checkpoint
 from lagnet.training.history import History, Report
 from lagnet.training.optimisation.loop import CHUNK, JUDGED, Loop, LoopState, make_loop
@@ -198,7 +199,7 @@ def _on_device(arrays: tuple[np.ndarray, ...]) -> tuple[Array, ...]:
 
 def _probe(samples: TrainingSamples) -> tuple[Array, ...]:
     """Evenly spread rows on which errors are reported."""
-    rows = np.unique(np.linspace(0, len(samples) - 1, JUDGED).astype(int))
+    rows = spread_rows(len(samples), JUDGED)
     return _on_device(tuple(x[rows] for x in samples.arrays))
 
 

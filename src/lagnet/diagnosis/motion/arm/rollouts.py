@@ -10,6 +10,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.joint.block_scores import BLOCKS, LONGEST, SHORTEST
 from lagnet.diagnosis.motion.problem import MotionProblem, Run, surest_edges
+from lagnet.recordings.sampling import spread_rows
 from lagnet.rollout.whole_arm import roll_out_arm
 
 STEP = 0.004  # [s] of a rollout at most
@@ -75,8 +76,8 @@ def runs_to_fit(problem: MotionProblem, fitted: int) -> tuple[Run, ...]:
         return tuple(runs)
     pieces = [piece for run in runs for piece in _pieces(problem, run)]
     longest = max(piece.last - piece.first + 1 for piece in pieces)
-    chosen = np.linspace(0, len(pieces) - 1, min(len(pieces), max(1, SAMPLES // longest))).round().astype(int)
-    return tuple(pieces[i] for i in np.unique(chosen))
+    chosen = spread_rows(len(pieces), max(1, SAMPLES // longest))
+    return tuple(pieces[i] for i in chosen)
 
 
 def _pieces(problem: MotionProblem, run: Run) -> list[Run]:

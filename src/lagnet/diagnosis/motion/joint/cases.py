@@ -11,6 +11,7 @@ from lagnet.diagnosis.motion.joint.fitting import JointData
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.joint.self_locking import moved_by_load
 from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.recordings.sampling import median_step
 from lagnet.rollout.one_joint import JointSeries, Windows
 from lagnet.servos.catalogue import SERVO_CATALOGUE
 from lagnet.servos.effect import Scales
@@ -196,7 +197,7 @@ def _scales(series: JointSeries, speed: np.ndarray, moving: np.ndarray, law: np.
     rms_speed = float(np.sqrt(np.mean(speed[moving] ** 2))) if moving.any() else 1.0
     kp = float(start.law[KP])
     inertia = float(series.mass.mean() + law[INDEX["rotor"]])
-    sample = float(np.median(np.diff(series.time)))
+    sample = median_step(series.time)
     return Scales(kp * rms_asked, max(rms_speed, 1e-6), error, max(inertia, 1e-9), sample, kp)
 
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.recordings.sampling import median_step
+
 LIFT = 1.25  # least error power inside a regime over that overall to be reported
 LEAST = 0.01  # least share of time of a regime
 
@@ -39,7 +41,7 @@ def regimes(signals: Mapping[str, np.ndarray], joint: int) -> dict[str, tuple[st
 
 def _after(event: np.ndarray, time: np.ndarray, span: float = 0.3) -> np.ndarray:
     """Samples within `span` seconds after an event."""
-    count = max(1, round(span / max(float(np.median(np.diff(time))), 1e-9)))
+    count = max(1, round(span / max(median_step(time), 1e-9)))
     return np.convolve(event, np.ones(count))[: event.size] > 0.0
 
 

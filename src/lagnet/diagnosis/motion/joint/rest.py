@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog
 
+from lagnet.recordings.sampling import median_step
 from lagnet.rollout.one_joint import JointSeries
 
 STILL = 3.0  # greatest movement of a joint at rest within `SPAN`, in resolutions
@@ -43,7 +44,7 @@ class RestBand:
 
 def at_rest(series: JointSeries, resolution: float) -> np.ndarray:
     """Samples around which the joint does not move and its command does not change, shape (n,)."""
-    span = max(2, round(SPAN / float(np.median(np.diff(series.time)))))
+    span = max(2, round(SPAN / median_step(series.time)))
     still = np.ones(len(series.q), dtype=bool)
     for signal, most in ((series.q, STILL * resolution), (series.command, 1e-9 + 0.5 * resolution)):
         for shift in (span // 2, span):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.diagnosis.motion.problem import SMOOTHING
+from lagnet.recordings.sampling import median_step
 from lagnet.rollout.one_joint import JointSeries
 from lagnet.servos.effect import ServoEffect
 from lagnet.servos.parameters import BIAS, DELAY, DRIVEN, NAMES
@@ -28,7 +29,7 @@ def moved_by_load(series: JointSeries, speed: np.ndarray, moving: np.ndarray, la
         moving: shape (n,), mask of samples in motion.
         law: whose delay and bias say what the motor did, shape (len(LAW),).
     """
-    side, sample = np.sign(speed), float(np.median(np.diff(series.time)))
+    side, sample = np.sign(speed), median_step(series.time)
     late = max(0, round(float(law[DELAY]) / sample))
     delayed = np.concatenate([series.command[:1].repeat(late), series.command[: len(speed) - late]])
     on = series.enabled > 0.5

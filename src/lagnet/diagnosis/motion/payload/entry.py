@@ -7,6 +7,7 @@ from math import exp
 from lagnet.diagnosis.motion.joint.block_scores import log10_odds
 from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.verdict.verdict import Abstained, EffectEvidence, EffectFound, NamedParameter
+from lagnet.percent import percent
 from lagnet.servos.nominal import NominalServo
 
 UNITS = {"m": "kg", "cx": "m", "cy": "m", "cz": "m"}
@@ -19,7 +20,7 @@ def payload_effect(payload: PayloadFound) -> EffectFound:
     evidence = EffectEvidence(*payload.power, 1.0, rival, log10_odds(payload.lead_errors))
     shown = ", ".join(f"{p.name} = {p.value:.4g} {p.unit}" for p in parameters)
     text = f"Payload on the last link, a point mass with {shown}: without it errors of position on motion that was not "
-    text += f"fitted are {100.0 * (exp(payload.gain) - 1.0):.0f} % larger."
+    text += f"fitted are {percent(exp(payload.gain) - 1.0)} larger."
     if payload.tied:
         names = " or ".join(t.replace("_", " ") for t in payload.tied)
         text += (

@@ -15,6 +15,7 @@ import numpy as np
 from lagnet.diagnosis.motion.arm.fitting import Errors, fit_values, sensitivities_of
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.problem import SLOPES, MotionProblem, motion_rates
+from lagnet.recordings.sampling import median_step
 from lagnet.rigid_body.inertia import parameters_of_body
 from lagnet.rollout.measured_load import measured_load
 from lagnet.rollout.one_joint import JointSeries
@@ -51,7 +52,7 @@ def body_loads(problem: MotionProblem) -> BodyLoads:
     for run in problem.runs:
         rows = slice(run.first, run.last + 1)
         v, a = motion_rates(time[rows], q[rows])
-        stride = max(1, int(SLOPES / float(np.median(np.diff(time[rows])))))
+        stride = max(1, int(SLOPES / median_step(time[rows])))
         for k in range(10):
             bodies = np.zeros((dof, 10))
             bodies[-1, k] = 1.0

@@ -10,6 +10,7 @@ from lagnet.recordings.quality.check import KINDS, QualityCheck, Subject
 from lagnet.recordings.quality.finding import CERTAIN, LIKELY, NO_ROWS, Finding
 from lagnet.recordings.quality.glitches import Glitch, glitches
 from lagnet.recordings.quality.runs import resolution
+from lagnet.recordings.sampling import median_step
 
 LEAST_OF_RANGE = {"q": 1e-4, "v": 0.02, "tau": 0.05}  # of a moving channel's range: less does no harm
 OF_BEND = 3.0  # times the second difference that 99 % of samples stay under: a joint that starts at once is no outlier
@@ -97,7 +98,7 @@ def _least(subject: Subject, kind: str, joint: int, values: np.ndarray) -> Calla
 def _is_event(subject: Subject, kind: str, joint: int, rows: np.ndarray, glitch: Glitch) -> bool:
     """Whether other signals bend at the same time as much as they hardly ever do, and what is seen is possible."""
     recording = subject.recording
-    step = float(np.median(np.diff(recording.time[rows])))
+    step = median_step(recording.time[rows])
     if kind == "q" and glitch.size > IMPOSSIBLE * (0.5 * (glitch.stop - glitch.start + 1) * step) ** 2:
         return False
     if (

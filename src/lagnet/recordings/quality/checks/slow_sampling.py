@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lagnet.percent import percent
 from lagnet.recordings.quality.check import QualityCheck, Subject
 from lagnet.recordings.quality.finding import LIKELY, Finding
 from lagnet.recordings.quality.interpolation import off_neighbours
@@ -38,7 +39,7 @@ class SlowSampling(QualityCheck):
             yield self.found(
                 subject,
                 f"at {subject.recording.rate:.4g} Hz positions do not follow from those of neighbouring samples (off by"
-                f" {100 * float(np.median(moving)):.0f} % of the step between them): the motion is too quick for the"
+                f" {percent(float(np.median(moving)))} of the step between them): the motion is too quick for the"
                 " rate, or the positions are mostly noise",
                 "record at a rate of at least ten times the highest frequency of the motion",
                 LIKELY,

@@ -11,6 +11,7 @@ import numpy as np
 
 from lagnet.errors import RecordingError
 from lagnet.recordings.readers.logs.log_source import LogSource, Origin
+from lagnet.recordings.sampling import median_step
 
 ORIGIN = Origin("servo-bench log", "JSON with the keys kp and entries", "the timestamps of its entries", effort="")
 FULL_PWM = {"xl330": 885.0}  # counts of full voltage, by motor
@@ -78,7 +79,7 @@ def _mend(columns: dict[str, np.ndarray], motor: str) -> tuple[str, ...]:
     """Microseconds to seconds, words of 16 bits to signed numbers, counts to duty; what must be told."""
     told = []
     time = columns["time"]
-    if time.size > 1 and np.median(np.diff(time)) > LONGEST_STEP:
+    if time.size > 1 and median_step(time) > LONGEST_STEP:
         columns["time"] = time / 1e6
         told.append("the clock counts microseconds")
     for name in ("v_0", "duty_0"):

@@ -21,7 +21,7 @@ QUANTITIES: Mapping[str, tuple[str, str, str]] = {  # of a signal: in words, uni
 }
 
 
-def leftover_by_signal(key: str, joint: JointEvidence, sliding: frozenset[int]) -> Figure | None:
+def remainder_by_signal(key: str, joint: JointEvidence, sliding: frozenset[int]) -> Figure | None:
     """A cloud of the residual with its median.
 
     Args:
@@ -29,7 +29,7 @@ def leftover_by_signal(key: str, joint: JointEvidence, sliding: frozenset[int]) 
         joint: evidence of the joint.
         sliding: numbers of the prismatic joints.
     """
-    shape = joint.leftover
+    shape = joint.remainder
     if shape is None or len(shape.value) == 0:
         return None
     words, unit = _quantity(shape.signal, sliding)
@@ -57,7 +57,7 @@ def leftover_by_signal(key: str, joint: JointEvidence, sliding: frozenset[int]) 
 
 def formula_words(joint: JointEvidence) -> str | None:
     """The formula with what it is worth; None where no simple one holds."""
-    shape = joint.leftover
+    shape = joint.remainder
     if shape is None or shape.formula is None:
         return None
     return f"{shape.formula} [{joint.unit}] predicts {percent(shape.share)} of it on held-out motion"
