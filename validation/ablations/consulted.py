@@ -34,7 +34,6 @@ from validation.concealed.code import fingerprint
 
 HERE = Path(__file__).resolve().parent
 CODE = fingerprint()
-FURTHER = {"far_models": ("collinear_with_body",)}  # where it rejects most
 Unproven = Callable[[str], Sequence[str]]
 """Rules to leave out where they reject something, by kind of data."""
 PLANTS = {"simulated": 48, "textured": 24, "unlisted": 8, "late_logs": 4, "far_models": 30, "another_simulator": 46}
@@ -132,8 +131,7 @@ def conduct(every: Iterator[Case], unproven: Unproven, home: Path) -> None:
 def of_the_study(kind: str) -> list[str]:
     """Rules to ask further: those that rejected nothing in the study; on real arms, all that buy nothing there."""
     result = json.loads((HERE / "result.json").read_text())
-    idle = result["rules_that_buy_nothing" if kind == "real_arms" else "rules_that_rejected_nothing"]
-    return [*idle, *FURTHER.get(kind, ())]
+    return result["rules_that_buy_nothing" if kind == "real_arms" else "rules_that_rejected_nothing"]
 
 
 def main() -> int:
