@@ -14,7 +14,6 @@ from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.rigid_body.inertia import parameters_of_body
 
 JOINT = 1
-MASS = 1.5  # [kg]
 LEAD = 0.012  # [s] by which dry friction turns before the speed
 STIFFNESS = 150.0  # [N m/rad]
 
@@ -51,10 +50,6 @@ class Bench:
         """Effects at the joint, on recordings with a law there."""
         return self.candidate(name, self.plant(self.at(JOINT, law)).record, effects)
 
-    def loaded(self) -> Any:
-        """The arm with a payload."""
-        return self.arm.with_payload(MASS, np.array([0.05, 0.08, 0.15]), 0.006 * np.eye(3))
-
 
 def viscous(q, v, a, tau):
     return 4.0 * v
@@ -68,16 +63,6 @@ def friction_named_rightly(b: Bench) -> Candidate:
 def friction_of_a_perfect_joint(b: Bench) -> Candidate:
     """Viscous friction where nothing is left out."""
     return b.candidate("perfect", b.plant().record, ["viscous_friction"])
-
-
-def gain_beside_a_payload(b: Bench) -> Candidate:
-    return b.candidate("payload", b.plant(robot=b.loaded()).record, ["torque_gain"], ["payload"])
-
-
-def friction_beside_a_payload(b: Bench) -> Candidate:
-    level = 0.1 * b.plant(robot=b.loaded()).usual_torque()[JOINT]
-    real = b.plant(b.at(JOINT, lambda q, v, a, tau: level * v), robot=b.loaded())
-    return b.candidate("payload and friction", real.record, ["viscous_friction"], ["payload"])
 
 
 def uneven(q, v, a, tau):
@@ -213,7 +198,6 @@ def small_friction(b: Bench) -> Candidate:
 
 Case = Callable[[Bench], Candidate]
 CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect that it rejects, not rejected in
-    "collinear_with_body": (gain_beside_a_payload, "torque_gain", friction_beside_a_payload),
     "canonical_form": (
         friction_and_offset_as_uneven_friction,
         "asymmetric_friction",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
-from lagnet.diagnosis.rules.collinear_with_body import CollinearWithBody
 from lagnet.diagnosis.rules.distant_centre import DistantCentre
 from lagnet.diagnosis.rules.gain_beside_free_links import GainBesideFreeLinks
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
@@ -18,7 +17,6 @@ from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
 from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
 
 RULES: tuple[RejectionRule, ...] = (
-    CollinearWithBody(),
     CanonicalForm(),
     NoHoldoutGain(),
     NegligibleTorque(),
