@@ -31,12 +31,14 @@ PENDULUM = """<robot name="pendulum"><link name="base"/><link name="arm"><inerti
 def main() -> None:
     """Runs both arms of the study and writes result.json, unless --quick."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--evaluations", type=int, default=1500, help="of the rival on SO-101")
+    told = "of the rival on SO-101, draw by draw, the last number for all further draws"
+    parser.add_argument("--evaluations", type=int, nargs="+", default=[1500], help=told)
     parser.add_argument("--quick", action="store_true", help="one servo and a short rival; nothing is written")
     given = parser.parse_args()
     result: dict[str, Any] = {"xl330": _xl330(60 if given.quick else 2500), "so101": []}
-    for seed in () if given.quick else DRAWS:
-        result["so101"].append(_so101(seed, given.evaluations))
+    for draw, seed in enumerate(() if given.quick else DRAWS):
+        evaluations = given.evaluations[min(draw, len(given.evaluations) - 1)]
+        result["so101"].append(_so101(seed, evaluations))
         result["pass"] = {
             "so101_error": all(run["rmse_deg"] <= 0.6 for run in result["so101"]),
             "so101_time": all(run["seconds"] <= 180.0 for run in result["so101"]),

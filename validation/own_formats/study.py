@@ -69,12 +69,18 @@ def summary(verdict: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Runs every set, or the first with --quick, and writes result.json after each."""
+    """Runs every set, the first with --quick, or some of them with --only, and writes result.json after each."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="the first set alone; nothing is written")
-    quick, result = parser.parse_args().quick, {}
+    parser.add_argument("--only", default="", help="a word of the sets' names; the others keep what is written")
+    given = parser.parse_args()
+    quick, result = given.quick, {}
+    if given.only:
+        result = json.loads((HERE / "result.json").read_text(encoding="utf-8"))["sets"]
     with tempfile.TemporaryDirectory() as folder:
         for number, (name, arguments) in enumerate(cases(Path(folder)).items()):
+            if given.only not in name:
+                continue
             result[name] = diagnosed(arguments, Path(folder) / f"out_{number}")
             print(name, json.dumps(result[name], ensure_ascii=False), flush=True)
             if quick:
