@@ -85,7 +85,9 @@ def remainder_sizes(problem: Problem, after: Remainder, noise: np.ndarray) -> tu
     return tuple(_size(problem, after, nominal, float(noise[j]), j) for j in range(problem.n_dof))
 
 
-def _size(problem: Problem, after: Remainder, nominal: dict, noise: float, joint: int) -> RemainderSize:
+def _size(
+    problem: Problem, after: Remainder, nominal: dict[str, tuple[np.ndarray, np.ndarray]], noise: float, joint: int
+) -> RemainderSize:
     power, fitted = power_of(*after.holdout, joint), power_of(*after.fit, joint)
     limit = (problem.limits.above_noise * noise) ** 2
     if max(power, fitted) <= limit:
@@ -106,7 +108,7 @@ def joint_remainders(
     """
     limits = (problem.limits.above_noise * noise) ** 2
     looks = (_look(problem, after, size, float(limits[j]), seed, j) for j, size in enumerate(sizes))
-    return tuple(JointRemainder(size, *look) for size, look in zip(sizes, looks, strict=True))
+    return tuple(JointRemainder(size, look[0], look[1]) for size, look in zip(sizes, looks, strict=True))
 
 
 def _look(
