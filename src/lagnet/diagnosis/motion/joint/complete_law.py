@@ -20,7 +20,7 @@ from lagnet.diagnosis.motion.joint.selection import PLAIN
 from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.parameters import KP
 
-IDENTIFIED = (*PLAIN, "stribeck_friction")  # effects of the complete law, named or not
+IDENTIFIED = (*PLAIN, "quadratic_drag", "stribeck_friction")  # effects of the complete law, named or not
 INSTEAD = (
     ("position_bias", "torque_offset"),
     ("load_dependent_friction", "gear_friction"),
@@ -37,7 +37,6 @@ FURTHER = (
     "static_friction",
     "dead_band",
     "load_stribeck_friction",
-    "quadratic_drag",  # it outgrows everything beyond the speeds that were fitted: only where motion asks for it
 )
 
 
