@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
+from contextlib import suppress
 from types import FrameType
+from typing import NoReturn
 
 INTERRUPTED = 3
 AGAIN = 0.02  # [s] after which it is asked again whether modules are still being loaded
@@ -13,12 +16,8 @@ IMPORT = "<frozen importlib._bootstrap>"
 COLLECTED = ("__del__", "_xla_gc_callback")  # called by the garbage collector, which swallows what they raise
 
 
-def run() -> int:
-    """Runs the command line of this process.
-
-    Returns:
-        The exit code, see `lagnet.cli.main`.
-    """
+def run() -> NoReturn:
+    """Runs the command line of this process and ends it with the exit code, see `lagnet.cli.main`."""
     try:
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGALRM, control_c)
@@ -29,23 +28,25 @@ def run() -> int:
     except KeyboardInterrupt:
         print("lagnet: interrupted", file=sys.stderr)
         code = INTERRUPTED
-    return leave(code)
+    leave(code)
 
 
-def leave(code: int) -> int:
-    """All is written and said: from here to the end of the interpreter, nothing hides the exit code.
+def leave(code: int) -> NoReturn:
+    """All is written and said: from here to the end of the process, nothing hides the exit code.
 
-    An interrupted interpreter is left at once: Python ends one by signal 2 whose Ctrl-C came inside of exec or eval,
-    though it was handled, and JAX may crash while it is taken down in the middle of its work.
+    What Python modules do at the end is done, unless the command was interrupted; then the process ends at once.
+    Compiled modules are not taken down: threads of theirs that still run would abort it, with code 134 in the place of
+    the command's. Python also ends by signal 2 where a Ctrl-C came inside of exec or eval, though it was handled.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.setitimer(signal.ITIMER_REAL, 0.0)
     signal.signal(signal.SIGALRM, signal.SIG_IGN)
-    if code == INTERRUPTED:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
-    return code
+    if code != INTERRUPTED:
+        atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # nobody reads any more
+            stream.flush()
+    os._exit(code)
 
 
 def control_c(_: int, frame: FrameType | None) -> None:
@@ -70,4 +71,4 @@ def _unheard(frame: FrameType) -> bool:
 
 
 if __name__ == "__main__":
-    sys.exit(run())
+    run()

@@ -69,6 +69,14 @@ def test_control_c_on_the_way_out_keeps_the_exit_code() -> None:
     assert (done.returncode, done.stderr) == (2, "")
 
 
+def test_compiled_modules_that_abort_at_the_end_do_not_hide_the_exit_code() -> None:
+    code = "import atexit, ctypes, lagnet.__main__ as entry, lagnet.cli.main as m\nm.main = lambda: 2\n"
+    code += "library = ctypes.CDLL(None)\nlibrary['__cxa_atexit'](library.abort, None, None)\n"
+    code += "atexit.register(print, 'the end')\nentry.run()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "the end\n", "")
+
+
 def test_control_c_between_the_command_and_its_end_is_asked_again() -> None:
     after = SimpleNamespace(f_code=entry.run.__code__, f_back=None)
     signal.signal(signal.SIGALRM, lambda *_: asked.append(True))
