@@ -7,6 +7,7 @@ from tests.diagnosis.conftest import Plant
 
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.identified.instead import instead_of_names
+from lagnet.diagnosis.identified.verdict_entry import INSTEAD, identified_as_json
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import condition
@@ -44,3 +45,13 @@ def test_what_passes_is_kept_and_nothing_stands_in_its_place() -> None:
     problem = posed(arm, Plant(arm))
     there = [NamedEffect("torque_offset", 0, {"b": 5.0}, interval=(1.0, 2.0))]
     assert instead_of_names(problem, there, None) is None
+
+
+def test_a_layer_in_the_place_of_the_names_says_so() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    real = arm.with_inertial_parameters(arm.inertial_parameters() * HEAVIER[:, None])
+    found = identify(posed(arm, Plant(real, [lambda q, v, a, load: FRICTION * v])), ())
+    beside, instead = (identified_as_json(found, arm, arm.joints, told)["words"] for told in (False, True))
+    assert instead.startswith(INSTEAD)
+    assert "beside the named physics at" in beside
+    assert "beside the named physics" not in instead

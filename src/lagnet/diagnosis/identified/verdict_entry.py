@@ -40,7 +40,7 @@ def identified_as_json(
     own = [entry for j, name in enumerate(joints) if (entry := _joint(found, j, name))]
     ties = _ties(found, joints)
     words = _words(bodies, undetermined, own, ties, _late(found, joints))
-    words = f"{INSTEAD} {words}" if instead else words
+    words = f"{INSTEAD} {words.replace(BESIDE, '')}" if instead else words
     entry = {"bodies": bodies, "undetermined": undetermined, "joints": own, "ties": ties}
     return {**entry, "samples_that_count_as_one": found.choice.inefficiency, "words": words}
 
@@ -49,6 +49,7 @@ INSTEAD = (
     "Unseen motion is predicted better where the values of the named effects are not held fixed: in the identified "
     "layer and the full correction this layer stands in their place. The names stay claims, judged by themselves."
 )
+BESIDE = " beside the named physics"
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
 
 
@@ -138,7 +139,7 @@ def _words(bodies: list, undetermined: list, own: list, ties: list, late: list[s
         parts.append(f"The inertia of the links behind {_listed(links)} differs from the model's.")
         parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
     if own:
-        parts.append(f"Friction, rotor or offset beside the named physics at {_listed([e['joint'] for e in own])}.")
+        parts.append(f"Friction, rotor or offset{BESIDE} at {_listed([e['joint'] for e in own])}.")
     if late:
         parts.append(f"At {_listed(late)} torque lags behind the motion: a part of it is in phase with −a.")
     if ties:
