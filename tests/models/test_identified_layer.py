@@ -53,10 +53,10 @@ def test_all_layers_come_back_and_each_can_be_loaded_apart(model, tmp_path) -> N
 
 def test_a_layer_in_the_place_of_the_names_holds_their_torque_and_leaves_the_named_layer(model, tmp_path) -> None:
     time, q, v, a = motion()
-    passing = NamedEffect("torque_offset", 2, {"b": 3.0}, interval=(0.5, 1.0))
-    both = replace(model, effects=(*model.effects, passing), instead=replace(model.identified, bodies=None))
+    transient = NamedEffect("torque_offset", 2, {"b": 3.0}, interval=(0.5, 1.0))
+    both = replace(model, effects=(*model.effects, transient), instead=replace(model.identified, bodies=None))
     back = lagnet.load_robot(save_corrected(both, tmp_path / "corrected"))
-    plain = CorrectedModel(model.nominal, (passing,), model.slow, identified=both.instead)
+    plain = CorrectedModel(model.nominal, (transient,), model.slow, identified=both.instead)
     for way in (both, back):
         got, want = way.torque_along(time, q, v, a), plain.torque_along(time, q, v, a)
         np.testing.assert_allclose(got, want, rtol=ROUNDING, atol=ROUNDING)

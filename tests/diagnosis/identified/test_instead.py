@@ -40,7 +40,7 @@ def test_right_names_stay_with_and_without_more_to_identify() -> None:
         assert instead_of_names(problem, right, identify(problem, right)) is None
 
 
-def test_what_passes_is_kept_and_nothing_stands_in_its_place() -> None:
+def test_transients_are_kept_and_nothing_stands_in_its_place() -> None:
     arm = random_arm(2, seed=4, kinds=("revolute",), fixed=False)
     problem = posed(arm, Plant(arm))
     there = [NamedEffect("torque_offset", 0, {"b": 5.0}, interval=(1.0, 2.0))]

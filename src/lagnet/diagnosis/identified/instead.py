@@ -15,7 +15,7 @@ import numpy as np
 from lagnet.diagnosis.identified.evidence import joint_equations
 from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.models.corrected.named_effects import NamedEffect, passing, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with, transients_among
 
 LESS = np.log(0.9)  # mean over joints of ln(error in place of the names / error beside them), below which it is used
 
@@ -28,7 +28,7 @@ def instead_of_names(problem: Problem, effects: Sequence[NamedEffect], beside: I
         effects: named physics.
         beside: the layer beside all of it; None where it predicts nothing more.
     """
-    rest = passing(effects)
+    rest = transients_among(effects)
     alone = identify(problem, rest) if len(rest) < len(effects) else None
     if alone is None:
         return None

@@ -14,7 +14,7 @@ from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError, ModelError
 from lagnet.models.corrected.changed_bodies import CHANGES_OF_BODIES, apply_to_bodies
 from lagnet.models.corrected.identified import IdentifiedLayer
-from lagnet.models.corrected.named_effects import NamedEffect, load_before, passing, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with, transients_among
 from lagnet.models.corrected.remainder import LearnedRemainder
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.types import (
@@ -95,7 +95,7 @@ class CorrectedModel:
     @property
     def acting(self) -> tuple[NamedEffect, ...]:
         """The named effects that torques are of: all but those in whose place a layer stands."""
-        return self.effects if self.instead is None else passing(self.effects)
+        return self.effects if self.instead is None else transients_among(self.effects)
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -77,7 +77,7 @@ class NamedEffect:
         return torque
 
 
-def passing(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
+def transients_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
     """Those that act for a while, or in one recording, alone."""
     return tuple(e for e in effects if e.interval is not None or e.recording is not None)
 
