@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.estimation.superposition import Superposition
+from lagnet.diagnosis.estimation.superposition import Change, Superposition
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.model import NamedEffect, torque_with
@@ -50,9 +50,27 @@ def test_a_change_is_the_difference_of_two_sums(n: int, motion: Motion) -> None:
     sums = Superposition(motion, effects)
     np.testing.assert_allclose(sums.total, torque_with(motion, effects), rtol=1e-12, atol=1e-12)
     anew = torque_with(motion, [*effects[:n], other, *effects[n + 1 :]]) - torque_with(motion, effects)
-    change = sums.change(n, other)
-    told = np.zeros_like(anew)
+    assert np.abs(anew).max() > 0
+    np.testing.assert_allclose(at_all(sums.change(n, other), anew), anew, rtol=0, atol=ROUNDING * largest(motion))
+
+
+@pytest.mark.parametrize("n", range(len(EFFECTS)))
+def test_an_effect_that_goes_takes_all_with_it_that_followed_from_it(n: int, motion: Motion) -> None:
+    effects = [given(e) for e in EFFECTS]
+    anew = torque_with(motion, [*effects[:n], *effects[n + 1 :]]) - torque_with(motion, effects)
+    told = at_all(Superposition(motion, effects).without(n), anew)
+    assert np.abs(anew).max() > 0
+    np.testing.assert_allclose(told, anew, rtol=0, atol=ROUNDING * largest(motion))
+
+
+def at_all(change: Change, like: np.ndarray) -> np.ndarray:
+    """A change with zeros at the joints that it leaves out."""
+    told = np.zeros_like(like)
     for joint, torque in change.items():
         told[:, joint] = torque
-    assert np.abs(anew).max() > 0
-    np.testing.assert_allclose(told, anew, rtol=0, atol=ROUNDING * np.abs(motion.load).max())
+    return told
+
+
+def largest(motion: Motion) -> float:
+    """Largest torque of the bodies."""
+    return float(np.abs(motion.load).max())

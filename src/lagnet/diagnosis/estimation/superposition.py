@@ -43,7 +43,7 @@ class Superposition:
             before = load
             for n in self._of(stage):
                 seen = load if stage == "signal" else before
-                added = _by_joint(self._effects[n].added(motion.with_load(seen)))
+                added = self._effects[n].added_at(motion.with_load(seen))
                 self._parts[n] = _Part(seen, added)
                 load = _plus(load, added)
             if stage == "body":
@@ -53,34 +53,47 @@ class Superposition:
 
     def change(self, n: int, other: NamedEffect) -> Change:
         """By how much the torque changes if effect n becomes another of the same law and joint."""
-        stage = effect_named(other.effect).stage
-        change = _minus(_by_joint(other.added(self._motion.with_load(self._parts[n].seen))), self._parts[n].added)
-        if stage == "body":
-            products = self._products_change(n, other)
+        own = _minus(other.added_at(self._motion.with_load(self._parts[n].seen)), self._parts[n].added)
+        return self._all_of(n, own, self._products_change(n, other))
+
+    def without(self, n: int) -> Change:
+        """By how much the torque changes if effect n goes."""
+        others = (*self._effects[:n], *self._effects[n + 1 :])
+        products = _products(self._motion, others) - self._products if self._is_of(n, "body") else 0.0
+        return self._all_of(n, _minus({}, self._parts[n].added), products)
+
+    def _all_of(self, n: int, change: Change, products: np.ndarray | float) -> Change:
+        """A change of effect n's own torque, with that of its products and of all effects that see it."""
+        if self._is_of(n, "body"):
             change = _minus(change, {} if np.ndim(products) == 0 else _by_joint(-np.asarray(products)))
             for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the bodies alone
                 change = _minus(change, {j: -x for j, x in after.items()})
         for m in self._of("signal"):
-            if stage != "signal" or m > n:
+            if m > n or not self._is_of(n, "signal"):
                 change = _minus(change, {j: -x for j, x in self._answer(m, change).items()})
         return change
 
     def _products_change(self, n: int, other: NamedEffect) -> np.ndarray | float:
         """What changes of products of tilt, bodies and encoder offsets; they are linear in each body."""
+        if not self._is_of(n, "body"):
+            return 0.0
         if effect_named(other.effect).is_body:
             others = [e for e in self._effects if e.effect in (TILT, OFFSET)]
             return _products(self._motion, [other, *others]) - _products(self._motion, [self._effects[n], *others])
         return _products(self._motion, (*self._effects[:n], other, *self._effects[n + 1 :])) - self._products
 
+    def _is_of(self, n: int, stage: Stage) -> bool:
+        return effect_named(self._effects[n].effect).stage == stage
+
     def _of(self, stage: Stage) -> list[int]:
-        return [n for n, e in enumerate(self._effects) if effect_named(e.effect).stage == stage]
+        return [n for n in range(len(self._effects)) if self._is_of(n, stage)]
 
     def _answer(self, m: int, change: Change) -> Change:
         """By how much an effect changes if the load that it sees does."""
         effect, part = self._effects[m], self._parts[m]
         if not effect_named(effect.effect).uses_load or effect.joint not in change:
             return {}
-        return _minus(_by_joint(effect.added(self._motion.with_load(_plus(part.seen, change)))), part.added)
+        return _minus(effect.added_at(self._motion.with_load(_plus(part.seen, change))), part.added)
 
 
 def _products(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray | float:
@@ -89,7 +102,7 @@ def _products(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray | fl
 
 
 def _by_joint(torque: np.ndarray) -> Change:
-    return {int(j): torque[:, j] for j in np.flatnonzero(torque.any(axis=0))}
+    return {j: torque[:, j] for j in range(torque.shape[1]) if torque[:, j].any()}
 
 
 def _plus(load: np.ndarray, change: Change) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,13 +52,18 @@ def collect_block_grams(problem: Problem, library: Library, pieces: tuple[Segmen
     total = sum(p.keep.size for p in pieces)
     reduced_rate = total / max(1e-9, sum(np.ptp(p.time[p.keep]) for p in pieces if p.keep.size > 1))
     length = max(int(BLOCK * reduced_rate / problem.bandwidth), total // MOST_BLOCKS, 8)
-    grams: list[list[np.ndarray]] = [[] for _ in range(problem.n_dof)]
-    counts, recordings = [], []
-    for piece in pieces:
-        blocks = np.array_split(np.arange(piece.keep.size), max(1, round(piece.keep.size / length)))
+    blocks = [np.array_split(np.arange(p.keep.size), max(1, round(p.keep.size / length))) for p in pieces]
+    grams = tuple(np.empty((sum(map(len, blocks)), *2 * (library.width(j) + 1,))) for j in range(problem.n_dof))
+    first = 0
+    for piece, rows in zip(pieces, blocks, strict=True):
         for joint, table in enumerate(library.tables(problem, piece)):
-            counted = table * piece.counts[:, [joint]]
-            grams[joint].extend(counted[b].T @ counted[b] for b in blocks)
-        counts.extend(piece.counts[b].sum(axis=0) for b in blocks)
-        recordings.extend([piece.recording] * len(blocks))
-    return BlockGrams(tuple(np.stack(g) for g in grams), np.array(counts, dtype=float), np.array(recordings))
+            _fill(grams[joint][first:], table * piece.counts[:, [joint]], rows)
+        first += len(rows)
+    counts = [p.counts[b].sum(axis=0) for p, rows in zip(pieces, blocks, strict=True) for b in rows]
+    recordings = np.repeat([p.recording for p in pieces], [len(rows) for rows in blocks])
+    return BlockGrams(grams, np.array(counts, dtype=float), recordings)
+
+
+def _fill(grams: np.ndarray, table: np.ndarray, blocks: Sequence[np.ndarray]) -> None:
+    for gram, rows in zip(grams, blocks, strict=False):  # of this segment; those of later ones follow
+        gram[:] = table[rows].T @ table[rows]

@@ -9,11 +9,12 @@ from typing import ClassVar, final
 import numpy as np
 
 from lagnet.diagnosis.estimation.gauss_newton import spread
-from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.estimation.superposition import Superposition
+from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect
 
 SILENT = 1e-3  # of the least power that is claimed: the others fit as well without it
 UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of its absence: it goes before all others
@@ -53,17 +54,23 @@ class NegligibleTorque(RejectionRule):
         """Power of each effect's torque over the least that may be claimed, at the joint where it is largest."""
         pieces = spread(problem.fit)
         motions = [p.motion(problem) for p in pieces]
-        together = [torque_with(m, effects) for m in motions]
+        sums = [Superposition(m, effects) for m in motions]
         nominal = _mean_square([problem.residual(p) for p in pieces])
         limits = problem.limits
         least = np.maximum(limits.least_torque**2 * problem.scale**2, limits.least_of_residual * nominal)
         out = []
         for n in range(len(effects)):
-            others = (*effects[:n], *effects[n + 1 :])
-            alone = zip(pieces, motions, together, strict=True)
-            parts = [problem.reduce(p, t - torque_with(m, others)) for p, m, t in alone]
+            parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
             out.append(float(np.max(_mean_square(parts) / least)))
         return out
+
+
+def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> np.ndarray:
+    """F Δτ of a change of some joints' torque, shape (len(keep), dof)."""
+    out = np.zeros((piece.keep.size, problem.n_dof))
+    if change:
+        out[:, list(change)] = problem.reduce(piece, np.column_stack(list(change.values())))
+    return out
 
 
 def _mean_square(parts: list[np.ndarray]) -> np.ndarray:

@@ -14,6 +14,7 @@ PER_TURN = (2.0, 400.0)  # periods per radian that are tried at all
 RESOLUTION = 0.35  # step of the scan, in periods over the range of the joint
 PERIODIC = 0.1  # of the order, the error beyond which it is not known that anything repeats
 TOLD = 2  # orders proposed from one residual
+SLICE = 64  # orders whose waves are in memory at once
 
 
 @final
@@ -84,9 +85,13 @@ class TorqueRipple(Effect):
 
 
 def _periodogram(q: np.ndarray, residual: np.ndarray, orders: np.ndarray) -> np.ndarray:
-    """Power of the residual at each order, shape (n_orders,), in slices that bound the memory."""
+    """|Σ r exp(-i N q)|² at evenly spaced orders N, shape (n_orders,), in slices that bound the memory.
+
+    A slice differs from the first by one factor, exp(-i (N_s - N_0) q), so that few exponentials are computed.
+    """
     power = np.empty(orders.size)
-    for start in range(0, orders.size, 64):
-        wave = np.exp(-1j * np.outer(orders[start : start + 64], q))
-        power[start : start + 64] = np.abs(wave @ residual) ** 2
+    turns = np.exp(-1j * np.outer(orders[:SLICE] - orders[0], q))
+    for start in range(0, orders.size, SLICE):
+        own = power[start : start + SLICE]
+        own[:] = np.abs(turns[: own.size] @ (residual * np.exp(-1j * orders[start] * q))) ** 2
     return power

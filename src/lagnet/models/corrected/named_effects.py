@@ -64,17 +64,24 @@ class NamedEffect:
 
     def added(self, motion: Motion) -> np.ndarray:
         """r_k along a motion, shape (n, dof) [N m]."""
+        full = np.zeros_like(motion.load)
+        for joint, torque in self.added_at(motion).items():
+            full[:, joint] = torque
+        return full
+
+    def added_at(self, motion: Motion) -> dict[int, np.ndarray]:
+        """r_k along a motion by joint, each of shape (n,) [N m]; joints that are not in it have none."""
         if self.recording is not None and self.recording != motion.recording:
-            return np.zeros_like(motion.load)
-        law = effect_named(self.effect)
-        torque = law.torque(motion, self.joint, self.values)
-        if torque.ndim == 1:
-            full = np.zeros_like(motion.load)
-            full[:, self.joint] = torque
-            torque = full
-        if self.interval is not None:
-            torque = torque * _inside(motion.time, self.interval)[:, None]
-        return torque
+            return {}
+        torque = effect_named(self.effect).torque(motion, self.joint, self.values)
+        if torque.ndim == 1 and self.joint is not None:
+            found = {self.joint: torque}
+        else:
+            found = {j: torque[:, j] for j in range(motion.n_dof) if torque[:, j].any()}
+        if self.interval is None:
+            return found
+        inside = _inside(motion.time, self.interval)
+        return {j: x * inside for j, x in found.items()}
 
 
 def transients_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
