@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
-from lagnet.diagnosis.free_bodies import against_given
+from lagnet.diagnosis.free_bodies import against_given, are_scaled_widely
 from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.random_arm import random_arm
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("free_bodies")]
@@ -74,3 +78,24 @@ def test_links_that_are_all_half_as_heavy_give_no_joint_a_gain(plant) -> None:
     assert max(f.nmse_identified for f in result.verdict.fit) < NO_GAIN * min(
         f.nmse_nominal for f in result.verdict.fit
     )
+
+
+def gains(q: np.ndarray, v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Two of three sensors that read a tenth and a fifth less."""
+    return tau * np.array([-0.1, -0.2, 0.0])
+
+
+def test_gains_of_most_sensors_stay_where_no_link_differs(plant) -> None:
+    arm = random_arm(3, seed=3, kinds=("revolute",), fixed=False)
+    real = plant(gains, robot=arm)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    found = {e.joint: e.value("g") for e in result.effects if e.effect == "torque_gain"}
+    joints = [fit.joint for fit in result.verdict.fit]
+    assert found == {joints[0]: pytest.approx(0.9, abs=0.01), joints[1]: pytest.approx(0.8, abs=0.01)}
+
+
+@pytest.mark.parametrize(("joints", "asked"), [(2, True), (4, True), (5, False), (1, False)])
+def test_gains_at_half_of_the_joints_ask_for_the_links(joints: int, asked: bool) -> None:
+    effects = [NamedEffect("torque_gain", j, {"g": 0.8}) for j in range(min(2, joints))]
+    candidate: Any = SimpleNamespace(effects=effects, problem=SimpleNamespace(n_dof=joints))
+    assert are_scaled_widely(candidate) is asked

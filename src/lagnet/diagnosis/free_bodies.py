@@ -28,6 +28,7 @@ from lagnet.types import InverseDynamics, RobotModel, is_robot_model
 
 FAR = 4.0  # times the mean square residual of free parameters, beyond which real bodies leave more than chance
 LITTLE = 0.1  # of the nominal mean square residual that free links may leave at a joint: beyond, they are not the cause
+BETTER = np.log(3.0)  # by which held-out errors of all joints together must fall: one joint's to a third
 MOST = 0.3  # of the nominal mean square residual that they may leave at a joint
 
 
@@ -51,6 +52,28 @@ def are_scaled_everywhere(candidate: Candidate) -> bool:
     links, joints = [e for e in candidate.effects if effect_named(e.effect).changes_link], candidate.problem.n_dof
     gains = gains_among(candidate.effects)
     return joints > 1 and (gains == joints or (bool(links) and 2 * gains >= joints))
+
+
+def are_scaled_widely(candidate: Candidate) -> bool:
+    """Whether half of the joints or more have a gain: sensors seldom do, and links that differ may look so."""
+    joints = candidate.problem.n_dof
+    return joints > 1 and 2 * gains_among(candidate.effects) >= joints
+
+
+def take_the_place_of_gains(beside: DiagnosisState, candidate: Candidate) -> bool:
+    """Whether free links leave half of the gains or fewer, and tell more of motion that neither has seen.
+
+    Where every joint has a gain, both are the same torque, and links, which reach all joints, need not tell more. Else
+    Σ_j ln max(mean r_j², σ_j²) must fall by ln 3 on held-out motion: free links can imitate a true gain.
+    """
+    if 2 * gains_among(beside.effects) > gains_among(candidate.effects):
+        return False
+    valid = np.concatenate([p.counts for p in candidate.segments("holdout")])
+    left = np.sum(candidate.residual("holdout") ** 2, axis=0) / np.maximum(1, valid.sum(axis=0))
+    links = np.array([joint.power for joint in beside.sizes])
+    floor = np.maximum(candidate.noise, 1e-12) ** 2
+    gain = np.sum(np.log(np.maximum(left, floor)) - np.log(np.maximum(links, floor)))
+    return are_scaled_everywhere(candidate) or bool(gain > BETTER)
 
 
 def gains_among(effects: Sequence[NamedEffect]) -> int:

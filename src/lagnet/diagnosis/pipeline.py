@@ -12,10 +12,10 @@ from lagnet.diagnosis.estimation.misspecification import interval_errors, widene
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.free_bodies import (
-    are_scaled_everywhere,
+    are_scaled_widely,
     beside_free_bodies,
     bodies_are_refuted,
-    gains_among,
+    take_the_place_of_gains,
 )
 from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
 from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
@@ -94,13 +94,13 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
 def _beside_free_links(candidate: Candidate, given: Inputs) -> DiagnosisState | None:
     """The results beside inertial parameters of all links; None where those of few links do as well."""
     refuted = bodies_are_refuted(candidate)
-    if not refuted and not are_scaled_everywhere(candidate):
+    if not refuted and not are_scaled_widely(candidate):
         return None
     free = beside_free_bodies(candidate.problem, given.noise)
     if free is None:
         return None
     beside = run_pipeline(free, given)
-    return beside if refuted or 2 * gains_among(beside.effects) <= gains_among(candidate.effects) else None
+    return beside if refuted or take_the_place_of_gains(beside, candidate) else None
 
 
 def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
