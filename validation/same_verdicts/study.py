@@ -12,6 +12,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +79,14 @@ def compared(old: dict[str, Any], new: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def _read(file: Path, folders: Sequence[Path]) -> dict[str, Any]:
+    """What a version told of a case, files named within the study's folders."""
+    text = file.read_text()
+    for folder in folders:
+        text = text.replace(f"{folder.resolve()}/", "")
+    return json.loads(text)
+
+
 def _git(*words: str) -> str:
     return subprocess.run(["git", *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
 
@@ -99,7 +108,7 @@ def main() -> int:
     asked.write_text(json.dumps(cases(given.data, given.out, 1 if given.quick else given.plants, arms)))
     names = [case["name"] for case in json.loads(asked.read_text())]
     folders = [ask(n, version, asked, given.out) for n, version in enumerate(given.versions)]
-    told = {f.name: {n: json.loads((f / f"{n}.json").read_text()) for n in names} for f in folders}
+    told = {f.name: {n: _read(f / f"{n}.json", (given.out, given.data)) for n in names} for f in folders}
     first, second, *_ = told
     rows = {v: {n: compared(told[first][n], of[n]) for n in names} for v, of in told.items()}
     seconds = {v: round(sum(x["processor_seconds"] for x in of.values()), 1) for v, of in rows.items()}
@@ -108,7 +117,15 @@ def main() -> int:
         "the second says the same": same,
         "the last but one is no slower": [*seconds.values()][-2] <= seconds[first],
     }
-    result = {"study": "same_verdicts", "lines": lines, "processor_seconds": seconds, "versions": rows}
+    result = {
+        "study": "same_verdicts",
+        "lines": lines,
+        "cases": len(names),
+        "same_names": {v: sum(row["same_names"] for row in of.values()) for v, of in rows.items()},
+        "same_to_the_last_digit": {v: sum(not row["other_values"] for row in of.values()) for v, of in rows.items()},
+        "processor_seconds": seconds,
+        "versions": rows,
+    }
     print(json.dumps(lines | {"processor_seconds": seconds}))
     if not given.quick:
         (HERE / "result.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
