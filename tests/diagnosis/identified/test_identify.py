@@ -158,3 +158,17 @@ def test_masses_that_are_missing_cost_no_joint_more_than_least_squares(number) -
         unseen_errors(problem, torque) for torque in (along(corrected(problem, identify(problem, ()))), squares.torque)
     )
     assert np.all(ours <= np.maximum(NO_WORSE * theirs, FLOOR * problem.unseen_variance))
+
+
+def test_no_friction_exceeds_the_load_that_it_is_told_of() -> None:
+    """A brake whose pads are pressed by the load: in proportion to it, but not as a gear's friction can be."""
+    arm = random_arm(3, seed=1, kinds=("revolute",), fixed=False)
+    brake = Plant(arm, (lambda q, v, a, load: 3.0 * np.abs(load) * np.sign(v) * np.array([0.0, 0.0, 1.0]),))
+    problem = posed(arm, brake)
+    found = identify(problem, ())
+    assert found is not None
+    pairs = zip(found.layer.terms, found.layer.weights, strict=True)
+    per_load = {t.joint: abs(float(w)) for t, w in pairs if t.kind == "load"}
+    assert max(per_load.values(), default=0.0) <= 1.0
+    left = unseen_errors(problem, along(corrected(problem, found)))
+    assert left[2] < unseen_errors(problem, lambda p: p.load)[2]
