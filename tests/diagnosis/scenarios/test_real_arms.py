@@ -162,3 +162,14 @@ def test_no_joint_is_worse_for_its_names_in_the_written_torque(arm, request) -> 
 @pytest.mark.parametrize("arm", ["ur10e", "tx40", "emps"])
 def test_hum_is_told_once_at_most(arm, request) -> None:
     assert sum("hum" in w for w in request.getfixturevalue(arm).verdict.warnings) <= 1
+
+
+@pytest.mark.shared_data
+def test_no_sensor_of_a_panda_is_given_a_gain_for_links_that_differ(shared_data) -> None:
+    """Five seconds of motion against a URDF whose links are not the arm's; the longer log is held out."""
+    robot = load_description("panda")
+    longer, shorter = (load_recording(shared_data / "panda" / f"{f}.csv.gz", robot=robot) for f in ("fit", "holdout"))
+    result = diagnose([shorter], robot, [longer])
+    assert "torque_gain" not in {e.effect for e in result.effects}
+    assert result.state.judged is not None  # beside free links
+    assert max(fit.nmse_identified for fit in result.verdict.fit) < 0.03  # with gains .15 at joint 5
