@@ -13,12 +13,12 @@ from lagnet.reports.wording import percent, wrapped
 KINDS = (
     ("nmse_nominal", "nominal model", "nominal"),
     ("nmse_named", "named", "corrected"),
-    ("nmse_identified", "named and identified", "series-7"),
+    ("nmse_identified", "identified", "series-7"),
     ("nmse_full", "with learned remainder", "law"),
 )
 MEANING = {
     "nmse_named": "Named: with the effects that the verdict names.",
-    "nmse_identified": "Identified: with all else that the recordings determine, whatever its cause.",
+    "nmse_identified": "Identified: all that recordings determine, beside the named effects or in their place.",
     "nmse_full": "With learned remainder: with small networks beyond that, where unseen motion gains from them.",
 }
 NAME_WIDTH = 20  # characters in a line
