@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values, sensitivities_of
-from lagnet.diagnosis.motion.arm.intervals import half_widths
+from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values
+from lagnet.diagnosis.motion.arm.profiles import profiled_ends
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
+from lagnet.diagnosis.motion.arm.secants import settled_secants
 from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
@@ -161,12 +162,13 @@ def _with_intervals(
     if arm is None:
         return dict(found)
     values = arm.read()
-    here, coupled = arm.errors(values), sensitivities_of(arm.errors, arm.sizes, arm.nearest)
-    half, _ = half_widths(here, coupled(values, here), _floors(found), np.diag(arm.sizes))
+    here, floors = arm.errors(values), _floors(found)
+    secants = settled_secants(arm.errors, values, here, arm.sizes, floors, arm.nearest)
+    low, high = profiled_ends(arm.errors, values, here, secants, arm.sizes, floors, arm.nearest)
     rows = [(j, group) for j, c in arm.free.items() for group in c.groups]
     ends: dict[int, dict[str, tuple[float, float]]] = {}
-    for (joint, group), value, width in zip(rows, values, half, strict=True):
-        ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
+    for (joint, group), *end in zip(rows, map(float, low), map(float, high), strict=True):
+        ends.setdefault(joint, {}).update(dict.fromkeys(group, (end[0], end[1])))
     return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
 
 
@@ -245,13 +247,17 @@ def _undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
 
 
 def _half_widths_away(found: JointDiagnosis, effect: str) -> float:
-    """max |p − p₀| over the half-width of p's interval, of all parameters of an effect; infinite without intervals."""
-    away = [np.inf] if not (names := [g[0] for g in groups_of(found.case, (effect,))]) else []
-    for name in names:
-        low, high = found.intervals.get(name, (np.nan, np.nan))
-        size = abs(found.named_law[INDEX[name]] - found.case.law[INDEX[name]]) / max(0.5 * (high - low), 1e-12)
-        away.append(size if np.isfinite(size) else np.inf)
-    return float(max(away))
+    """max |p − p₀| over the width of p's interval towards p₀, of all parameters of an effect; infinite without one."""
+    away = [away_from_nominal(found, g[0]) for g in groups_of(found.case, (effect,))]
+    return max(away, default=np.inf)
+
+
+def away_from_nominal(found: JointDiagnosis, name: str) -> float:
+    """|p − p₀| of a law parameter over the width of its interval towards p₀, infinite where it has none."""
+    value, nominal = float(found.named_law[INDEX[name]]), float(found.case.law[INDEX[name]])
+    low, high = found.intervals.get(name, (np.nan, np.nan))
+    size = abs(value - nominal) / max(value - low if nominal < value else high - value, 1e-12)
+    return size if np.isfinite(size) else np.inf
 
 
 def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiagnosis:
