@@ -8,7 +8,7 @@ intervals take each by itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,7 +119,7 @@ def fit_named_laws(
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
     out = {j: replace(_without(d, open_[j]), law=d.law) if j in open_ else d for j, d in out.items()}  # names alone go
-    return _with_intervals(problem, fitted, laws, out)
+    return _with_intervals(problem, fitted, laws, out, open_)  # those of other joints, with more free, are no narrower
 
 
 def _arm_of(
@@ -155,12 +155,18 @@ def _refitted(
 
 
 def _with_intervals(
-    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+    problem: MotionProblem,
+    fitted: int,
+    laws: np.ndarray,
+    found: Mapping[int, JointDiagnosis],
+    joints: Collection[int] | None = None,
 ) -> dict[int, JointDiagnosis]:
-    """The diagnoses with 95 % intervals of every free law parameter by name."""
+    """The diagnoses with 95 % intervals of every free law parameter by name, of all joints or of these."""
     arm = _arm_of(problem, fitted, laws, found)
-    if arm is None:
+    free = {} if arm is None else {j: c for j, c in arm.free.items() if joints is None or j in joints}
+    if arm is None or not free:
         return dict(found)
+    arm = replace(arm, free=free)
     values = arm.read()
     here, floors = arm.errors(values), _floors(found)
     secants = settled_secants(arm.errors, values, here, arm.sizes, floors, arm.nearest)
