@@ -76,9 +76,9 @@ def _widths(
     Slopes of both are differences by the same torque, that of the part's own interval: differences of two sizes meet
     other starts of a joint that sticks, and would tell apart by chance what is one.
     """
-    if not (rivals := _rivals(found, effect)):
+    groups, rivals = disjoint(groups_of(found.case, found.named.effects)), _rivals(found, effect)
+    if not rivals or servo_effect(effect).frees[0] not in groups:
         return {}
-    groups = disjoint(groups_of(found.case, found.named.effects))
     arm = ArmLaws(runs, laws, {joint: free_coordinates(groups, laws[joint], sizes_of(found.case.scales))})
     values = arm.read()
     here = arm.errors(values)
