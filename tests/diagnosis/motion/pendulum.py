@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.recordings.recording import Recording
 
 ENCODER = 2.0 * np.pi / 4096.0
+STILL = 2e-3  # [rad/s] below which a joint has to break away
 FINER = 4  # steps of the engine in a millisecond, by which dry friction stops in time
 MJCF = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody><body name="arm">
 <joint name="servo" type="hinge" axis="0 1 0" range="-3 3" damping="{damping}" frictionloss="{friction}"
@@ -33,13 +34,22 @@ def commands(seconds: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
     return time, np.where((time % 20.0 < 10.0), steps, chirp)[:, None]
 
 
-def record(path: Path, seconds: float, seed: int, delay: int = 0, dead_band: float = 0.0) -> Recording:
+def rests(data: mujoco.MjData) -> bool:
+    """Whether the joint rests, or comes to rest within the next step of the engine: where it turns, too."""
+    coming = -data.qvel[0] * data.qacc[0] * 0.001 / FINER
+    return abs(data.qvel[0]) < STILL or coming > data.qvel[0] ** 2
+
+
+def record(
+    path: Path, seconds: float, seed: int, delay: int = 0, dead_band: float = 0.0, break_away: float = 0.0
+) -> Recording:
     """A recording of the plant in a file; delay in steps of 1 ms; dry friction almost rigid, not viscous near rest."""
     model = mujoco.MjModel.from_xml_path(str(path))
     model.opt.timestep, model.opt.integrator = 0.001 / FINER, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     model.dof_solimp[:], model.dof_solref[:] = [0.9999, 0.9999, 0.001, 0.5, 2.0], [0.002 / FINER, 1.0]
     data = mujoco.MjData(model)
     time, command = commands(seconds, seed)
+    sliding = float(model.dof_frictionloss[0])
     held, q = np.repeat(command[:, 0], 20), np.empty((time.size, 1))
     for k in range(time.size):
         q[k] = data.qpos
@@ -48,5 +58,7 @@ def record(path: Path, seconds: float, seed: int, delay: int = 0, dead_band: flo
             error = u - data.qpos[0]
             beyond = np.sign(error) * max(abs(error) - dead_band, 0.0)
             data.ctrl[0] = data.qpos[0] + beyond
-            mujoco.mj_step(model, data, FINER)
+            for _ in range(FINER):
+                model.dof_frictionloss[0] = sliding + (break_away if rests(data) else 0.0)
+                mujoco.mj_step(model, data)
     return Recording(time, ENCODER * np.round(q / ENCODER), None, ("servo",), command=command, path=f"run_{seed}")

@@ -50,3 +50,13 @@ def test_nothing_is_named_where_nothing_is_hidden(pendulum, nominal, tmp_path):
     found = diagnosed(pendulum, nominal, tmp_path, {}, {})
     assert found.effects == ()
     assert not found.verdict.found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("torque", [0.06, 0.1])
+def test_a_break_away_torque_is_named_and_its_interval_holds_it(pendulum, nominal, tmp_path, torque):
+    found = diagnosed(pendulum, nominal, tmp_path, {}, {"break_away": torque})
+    assert [e.effect for e in found.effects] == ["static_friction"]
+    (told,) = found.effects[0].parameters
+    low, high = told.ci95
+    assert low <= torque <= high < 3.0 * torque

@@ -151,7 +151,8 @@ def _effect(name: str, found: JointDiagnosis, comparison: Comparison, total: flo
         value = values[p.name]
         low, high = found.intervals.get(names[0], (value, value))
         parameters.append(NamedParameter(p.name, value, p.unit, (min(low, value), max(high, value))))
-    reported = tuple(parameters if found.case.scale_is_set else (as_ratio(p, kp) for p in parameters))
+    ratios = (as_ratio(p, kp, names[0]) for p, names in zip(parameters, law.frees, strict=True))
+    reported = tuple(parameters if found.case.scale_is_set else ratios)
     power = float(np.exp(2.0 * found.named.blocks).mean()) / max(float(np.var(found.case.fit.series.q)), 1e-12)
     evidence = EffectEvidence(
         power * float(np.exp(2.0 * comparison.gain)),

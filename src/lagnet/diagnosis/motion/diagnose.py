@@ -10,6 +10,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.arm.complete_or_named import no_worse_than_named
 from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
+from lagnet.diagnosis.motion.arm.tied_friction import tie_dry_friction
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint.cases import joint_case
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
@@ -103,6 +104,7 @@ def diagnose_motion(
     apart = {i: d for i, d in enumerate(joints) if d is not None}
     apart = fit_named_laws(problem, len(fit_on), servo.laws, apart)
     apart = no_worse_than_named(problem, len(fit_on), servo.laws, apart)
+    apart = tie_dry_friction(problem, len(fit_on), servo.laws, apart)
     payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
     joints = tuple(beside.get(i) for i in range(len(joints)))
     loaded = bodies if payload is None else with_body(bodies, payload.body)

@@ -10,6 +10,7 @@ from lagnet.percent import percent
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 RATIOS = {"N m": "rad", "N m/rad": "", "N m s/rad": "s", "kg m²": "s²", "N m s²/rad²": "s²/rad"}
+PER_LOAD = {"load_driving": "rad/(N m)", "load_driven": "rad/(N m)", "load_squared": "rad/(N m)²"}  # of a given load
 
 
 def explain_effect(
@@ -41,9 +42,18 @@ def separating(name: str, tied: Sequence[str]) -> str:
     return " and ".join(dict.fromkeys(shown))
 
 
-def as_ratio(parameter: NamedParameter, kp: float) -> NamedParameter:
-    """p/kp of a torque, where nothing determines its scale in N m; lengths and times stay."""
-    if parameter.unit not in RATIOS or parameter.name == "kp":
+def as_ratio(parameter: NamedParameter, kp: float, law_parameter: str = "") -> NamedParameter:
+    """p/kp of a torque, where nothing determines its scale in N m; lengths and times stay.
+
+    Friction per load is a torque as well: the loads are those of the given bodies, whatever kp is.
+
+    Args:
+        parameter: as it is told.
+        kp: gain of the law [N m/rad].
+        law_parameter: the law parameter behind it, the first where there are several.
+    """
+    units = RATIOS | {parameter.unit: PER_LOAD[law_parameter]} if law_parameter in PER_LOAD else RATIOS
+    if parameter.unit not in units or parameter.name == "kp":
         return parameter
     low, high = parameter.ci95
-    return NamedParameter(f"{parameter.name}/kp", parameter.value / kp, RATIOS[parameter.unit], (low / kp, high / kp))
+    return NamedParameter(f"{parameter.name}/kp", parameter.value / kp, units[parameter.unit], (low / kp, high / kp))

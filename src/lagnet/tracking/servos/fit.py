@@ -113,7 +113,7 @@ def _rows(
         effect, parameter = owner
         value, half = float(law[INDEX[group[0]]]), fitted.half[joint, group[0]]
         told = NamedParameter(parameter.name, value, parameter.unit, (value - half, value + half))
-        told = told if servo.scale_is_set else as_ratio(told, float(law[KP]))
+        told = told if servo.scale_is_set else as_ratio(told, float(law[KP]), group[0])
         unit = replace(parameter, unit=told.unit).unit_for(slides)
         yield ParameterRow(effect, problem.joints[joint], told.name, unit or "–", told.value, *told.ci95)
 

@@ -10,7 +10,7 @@ import pytest
 
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.selection import refuted_by_load
-from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, moved_by_load
+from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, holds_every_load, moved_by_load
 from lagnet.rollout.one_joint import JointSeries, Windows, roll_out
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.parameters import law_vector
@@ -59,6 +59,13 @@ def test_friction_that_holds_every_load_is_rejected_where_the_load_moved_the_joi
     assert refuted_by_load(other, law, effect) is None
     assert refuted_by_load(case, law_vector(load_driven=0.9), effect) is None
     assert refuted_by_load(case, law, "coulomb_friction") is None
+
+
+def test_a_gear_holds_every_load_by_friction_per_load_alone():
+    law = law_vector(load_driving=1.2, load_driven=1.2, coulomb=5.0)
+    assert holds_every_load("load_dependent_friction", law)
+    assert not holds_every_load("coulomb_friction", law)
+    assert not holds_every_load("load_dependent_friction", law_vector(load_driving=0.9, load_driven=0.9))
 
 
 def _case(moved: bool) -> Any:

@@ -18,8 +18,9 @@ def no_worse_than_named(
 ) -> dict[int, JointDiagnosis]:
     """The diagnoses, with the named law of a joint as its complete one where that predicts its held-out motion better.
 
-    A complete law is fitted joint by joint, under loads along the measured motion; a named one by the whole arm. Where
-    one rigid joint moves alone both are the same rollouts, between which its own diagnosis has decided already.
+    A complete law is fitted joint by joint, under loads along the measured motion; a named one by the whole arm. Each
+    joint is judged beside the laws that its neighbours keep, as their motion is its load. Where one rigid joint moves
+    alone both are the same rollouts, between which its own diagnosis has decided already.
 
     Args:
         problem: all recordings, the first `fitted` of them fitted.
@@ -35,6 +36,16 @@ def no_worse_than_named(
         return dict(found)
     held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found))
     floors = np.array([d.case.floor for d in found.values()])
-    scores = [np.split(held.scores(held.errors(x), floors), len(found)) for x in (complete, named)]
-    worse = [float(np.mean(c - n)) > 0.0 for c, n in zip(*scores, strict=True)]
-    return {j: replace(d, law=d.named_law) if w else d for (j, d), w in zip(found.items(), worse, strict=True)}
+
+    def scores(arm: np.ndarray, at: int) -> np.ndarray:
+        return np.split(held.scores(held.errors(arm), floors), len(found))[at]
+
+    used = complete
+    for at, joint in enumerate(found):
+        if np.array_equal(used[joint], named[joint]):
+            continue
+        other = used.copy()
+        other[joint] = named[joint]
+        if float(np.mean(scores(used, at) - scores(other, at))) > 0.0:
+            used = other
+    return {j: replace(d, law=d.named_law) if np.array_equal(used[j], named[j]) else d for j, d in found.items()}

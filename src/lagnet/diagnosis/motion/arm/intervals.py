@@ -29,21 +29,45 @@ def half_widths(
         to_values: shape (m, k).
     """
     count = to_values.shape[1]
-    normal, scores, systematic = np.zeros((count, count)), np.zeros((BLOCKS, count)), []
-    for e, jacobian, floor in zip(errors, jacobians, floors, strict=True):
-        scale = robust_scale(e, floor)
-        weighted = jacobian * (1.0 / np.maximum(1.0, np.abs(e) / (HUBER * scale)) / scale**2)[:, None]
-        normal += weighted.T @ jacobian
-        scores += np.array([b.sum(axis=0) for b in np.array_split(weighted * e[:, None], BLOCKS)])
-        systematic.append((weighted, 0.5 * floor))
-    power, vectors = np.linalg.eigh(normal)
-    seen = power > UNSEEN * power[-1]
-    spread = to_values @ (vectors[:, seen] / power[seen]) @ vectors[:, seen].T
+    weighted, normal = _weighted(errors, jacobians, floors)
+    parts = [np.array_split(w * e[:, None], BLOCKS) for w, e in zip(weighted, errors, strict=True)]
+    scores = sum((np.array([b.sum(axis=0) for b in p]) for p in parts), np.zeros((BLOCKS, count)))
+    inverse, unseen = _inverse(normal)
+    spread = to_values @ inverse
     centred = scores - scores.mean(axis=0)
     variance = np.diag(spread @ (centred.T @ centred) @ spread.T) * BLOCKS / max(1.0, BLOCKS - count)
     half = NORMAL_95 * np.sqrt(np.maximum(variance, 0.0))
-    half = half + sum(np.abs(weighted @ spread.T).sum(axis=0) * step for weighted, step in systematic)
-    return half, vectors[:, ~seen]
+    systematic = zip(weighted, 0.5 * np.asarray(floors), strict=True)
+    half = half + sum(np.abs(w @ spread.T).sum(axis=0) * step for w, step in systematic)
+    return half, unseen
+
+
+def ridges(errors: Sequence[np.ndarray], jacobians: Sequence[np.ndarray], floors: np.ndarray) -> np.ndarray:
+    """Along row i all coordinates go as they do in the best fit of each value of coordinate i, shape (k, k).
+
+    Coordinate i itself goes by 1 along its row; by 0 where no joint shows it. Arguments as those of `half_widths`.
+    """
+    inverse, _ = _inverse(_weighted(errors, jacobians, floors)[1])
+    own = np.diag(inverse)
+    return np.where(own[:, None] > 0.0, inverse / np.where(own > 0.0, own, 1.0)[:, None], 0.0)
+
+
+def _weighted(
+    errors: Sequence[np.ndarray], jacobians: Sequence[np.ndarray], floors: np.ndarray
+) -> tuple[list[np.ndarray], np.ndarray]:
+    """W J of every joint, with Huber's weights over squared robust scales, and the normal matrix Σ Jᵀ W J."""
+    weighted = []
+    for e, jacobian, floor in zip(errors, jacobians, floors, strict=True):
+        scale = robust_scale(e, floor)
+        weighted.append(jacobian * (1.0 / np.maximum(1.0, np.abs(e) / (HUBER * scale)) / scale**2)[:, None])
+    return weighted, sum((w.T @ j for w, j in zip(weighted, jacobians, strict=True)), np.zeros((1, 1)))
+
+
+def _inverse(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The inverse of a normal matrix over the directions that a joint shows, and those that none does (k, unseen)."""
+    power, vectors = np.linalg.eigh(normal)
+    seen = power > UNSEEN * power[-1]
+    return (vectors[:, seen] / power[seen]) @ vectors[:, seen].T, vectors[:, ~seen]
 
 
 def widening(

@@ -8,14 +8,15 @@ intervals take each by itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values, sensitivities_of
-from lagnet.diagnosis.motion.arm.intervals import half_widths
+from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE, fit_values
+from lagnet.diagnosis.motion.arm.profiles import profiled_ends
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
+from lagnet.diagnosis.motion.arm.secants import settled_secants
 from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
@@ -118,7 +119,7 @@ def fit_named_laws(
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
     out = {j: replace(_without(d, open_[j]), law=d.law) if j in open_ else d for j, d in out.items()}  # names alone go
-    return _with_intervals(problem, fitted, laws, out)
+    return _with_intervals(problem, fitted, laws, out, open_)  # those of other joints, with more free, are no narrower
 
 
 def _arm_of(
@@ -154,19 +155,26 @@ def _refitted(
 
 
 def _with_intervals(
-    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+    problem: MotionProblem,
+    fitted: int,
+    laws: np.ndarray,
+    found: Mapping[int, JointDiagnosis],
+    joints: Collection[int] | None = None,
 ) -> dict[int, JointDiagnosis]:
-    """The diagnoses with 95 % intervals of every free law parameter by name."""
+    """The diagnoses with 95 % intervals of every free law parameter by name, of all joints or of these."""
     arm = _arm_of(problem, fitted, laws, found)
-    if arm is None:
+    free = {} if arm is None else {j: c for j, c in arm.free.items() if joints is None or j in joints}
+    if arm is None or not free:
         return dict(found)
+    arm = replace(arm, free=free)
     values = arm.read()
-    here, coupled = arm.errors(values), sensitivities_of(arm.errors, arm.sizes, arm.nearest)
-    half, _ = half_widths(here, coupled(values, here), _floors(found), np.diag(arm.sizes))
+    here, floors = arm.errors(values), _floors(found)
+    secants = settled_secants(arm.errors, values, here, arm.sizes, floors, arm.nearest)
+    low, high = profiled_ends(arm.errors, values, here, secants, arm.sizes, floors, arm.nearest)
     rows = [(j, group) for j, c in arm.free.items() for group in c.groups]
     ends: dict[int, dict[str, tuple[float, float]]] = {}
-    for (joint, group), value, width in zip(rows, values, half, strict=True):
-        ends.setdefault(joint, {}).update(dict.fromkeys(group, (float(value - width), float(value + width))))
+    for (joint, group), *end in zip(rows, map(float, low), map(float, high), strict=True):
+        ends.setdefault(joint, {}).update(dict.fromkeys(group, (end[0], end[1])))
     return {j: replace(d, intervals=ends.get(j, d.intervals)) for j, d in found.items()}
 
 
@@ -245,13 +253,17 @@ def _undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
 
 
 def _half_widths_away(found: JointDiagnosis, effect: str) -> float:
-    """max |p − p₀| over the half-width of p's interval, of all parameters of an effect; infinite without intervals."""
-    away = [np.inf] if not (names := [g[0] for g in groups_of(found.case, (effect,))]) else []
-    for name in names:
-        low, high = found.intervals.get(name, (np.nan, np.nan))
-        size = abs(found.named_law[INDEX[name]] - found.case.law[INDEX[name]]) / max(0.5 * (high - low), 1e-12)
-        away.append(size if np.isfinite(size) else np.inf)
-    return float(max(away))
+    """max |p − p₀| over the width of p's interval towards p₀, of all parameters of an effect; infinite without one."""
+    away = [away_from_nominal(found, g[0]) for g in groups_of(found.case, (effect,))]
+    return max(away, default=np.inf)
+
+
+def away_from_nominal(found: JointDiagnosis, name: str) -> float:
+    """|p − p₀| of a law parameter over the width of its interval towards p₀, infinite where it has none."""
+    value, nominal = float(found.named_law[INDEX[name]]), float(found.case.law[INDEX[name]])
+    low, high = found.intervals.get(name, (np.nan, np.nan))
+    size = abs(value - nominal) / max(value - low if nominal < value else high - value, 1e-12)
+    return size if np.isfinite(size) else np.inf
 
 
 def _without(found: JointDiagnosis, rejected: tuple[Rejected, ...]) -> JointDiagnosis:

@@ -2,7 +2,8 @@
 
 A rival that predicts as well is tied; one that predicts better, or as well with fewer effects, replaces the effect. A
 rival that contains the effect, or has more parameters, predicts as well by construction and is no tie. A special case
-of an effect takes its place where held-out motion does not ask for more.
+of an effect takes its place where held-out motion does not ask for more, and of two that are tied the one goes first
+with which a load could still move the joint.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from lagnet.diagnosis.motion.joint.block_scores import advantage, log10_odds
 from lagnet.diagnosis.motion.joint.fitting import robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
+from lagnet.diagnosis.motion.joint.self_locking import holds_every_load
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
 
 EQUIVALENT = {"viscous_friction": ("gain_error",)}  # observationally equivalent: Fv v and kd v
@@ -72,6 +74,8 @@ def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[
             better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
         elif lead_errors < case.limits.tie or lead < 0.1 * max(gain, 0.0):
             tied.append(rival)
+            if holds_every_load(effect, selected.law) and not holds_every_load(rival, found.law):
+                better = found if better is None or found.blocks.mean() < better.blocks.mean() else better
             simpler = _simpler(case, found, scale)
             if len(simpler.effects) < len(selected.effects) and _as_good(case, simpler, selected):
                 better = simpler if better is None or simpler.blocks.mean() < better.blocks.mean() else better

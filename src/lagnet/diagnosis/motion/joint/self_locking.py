@@ -12,6 +12,7 @@ import numpy as np
 from lagnet.diagnosis.motion.problem import SMOOTHING
 from lagnet.recordings.sampling import median_step
 from lagnet.rollout.one_joint import JointSeries
+from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.effect import ServoEffect
 from lagnet.servos.parameters import BIAS, DELAY, DRIVEN, NAMES
 
@@ -48,3 +49,8 @@ def _longest(mask: np.ndarray) -> int:
 def friction_when_driven(effect: ServoEffect, law: np.ndarray) -> float:
     """K₋ of an effect's law; 0 for an effect without."""
     return float(law[DRIVEN]) if any(NAMES[DRIVEN] in group for group in effect.frees) else 0.0
+
+
+def holds_every_load(name: str, law: np.ndarray) -> bool:
+    """Whether a gear with this effect of a law would hold every load by itself."""
+    return friction_when_driven(servo_effect(name), law) >= HOLDS
