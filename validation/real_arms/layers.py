@@ -5,9 +5,7 @@ python -m validation.real_arms.layers [--quick] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -20,6 +18,7 @@ from threadpoolctl import threadpool_limits
 from validation.real_arms.arms import EMPS, TX40, UR10E
 from validation.real_arms.joint_states import read_joint_states
 from validation.real_arms.least_squares import LeastSquares
+from validation.real_arms.options import parser_of
 
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.identified.remainder import learn_remainder
@@ -136,11 +135,7 @@ def errors_of(problem: Problem, torque: Callable[[Segment], np.ndarray], band: f
 
 def main() -> int:
     """Run the study; 0 if the identified layer is nowhere worse than 1.1 times least squares, nor full than 1.05."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="EMPS and UR10 alone; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    options = parser.parse_args()
+    options = parser_of(__doc__, "EMPS and UR10 alone").parse_args()
     found = {}
     for name, case in cases(options.data).items():
         if options.quick and name not in ("emps", "ur10"):

@@ -7,9 +7,7 @@ python -m validation.real_arms.loaded [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import tempfile
 import time
 from dataclasses import replace
@@ -18,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from validation.real_arms.arms import UR10E
+from validation.real_arms.options import parser_of
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.problem.problem import pose_problem
@@ -87,9 +86,7 @@ def lines(result: Diagnosis, unseen: np.ndarray) -> dict[str, bool]:
 
 def main() -> int:
     """Run the study; 0 if every line is passed."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
+    parser = parser_of(__doc__)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         robot = calibrated(options.data, Path(scratch))

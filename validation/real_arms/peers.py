@@ -5,13 +5,11 @@ python -m validation.real_arms.peers [--only NAME...] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import importlib
 import io
 import json
 import logging
-import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,6 +21,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 from validation.real_arms.layers import BANDS, cases, errors_of
 from validation.real_arms.least_squares import LeastSquares
+from validation.real_arms.options import parser_of
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
@@ -150,10 +149,8 @@ def lines(found: dict[str, Any]) -> dict[str, bool | str]:
 
 def main() -> int:
     """Run the study; 0 if every line is passed."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--only", nargs="*", help="these sets alone; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
     options = parser.parse_args()
     chosen = cases(options.data)
     found = {name: study(name, chosen[name]) for name in options.only or chosen}

@@ -5,15 +5,14 @@ python -m validation.real_arms.rough [--quick] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from validation.real_arms.layers import Case, cases
+from validation.real_arms.options import parser_of
 from validation.real_arms.splits import summary
 from validation.real_arms.whole import whole
 
@@ -73,11 +72,7 @@ def _moved(parameters: np.ndarray, draw: np.random.Generator) -> np.ndarray:
 
 def main() -> int:
     """Run the study; 0 if no joint's identified layer is beyond 1.1 times least squares."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="one set and kind; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    options = parser.parse_args()
+    options = parser_of(__doc__, "one set and kind").parse_args()
     found: dict[str, Any] = {}
     for name, case in list(rough_cases(options.data).items())[: 1 if options.quick else None]:
         found[name] = whole(name.split(":")[0], case())

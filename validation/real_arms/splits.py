@@ -5,9 +5,7 @@ python -m validation.real_arms.splits [--quick] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +14,7 @@ import numpy as np
 from validation.real_arms.arms import UR10E
 from validation.real_arms.joint_states import read_joint_states
 from validation.real_arms.layers import Case, cases, cut, read, study
+from validation.real_arms.options import parser_of
 
 from lagnet.models.files.loading import load_any
 
@@ -73,11 +72,7 @@ OTHERS = ("least_squares_and_trees", "identified", "full")
 
 def main() -> int:
     """Run the splits; 0 if no joint's identified layer is beyond 1.1 times least squares, nor full beyond 1.05."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="the first split alone; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    options = parser.parse_args()
+    options = parser_of(__doc__, "the first split alone").parse_args()
     found = {}
     for name, case in list(splits(options.data).items())[: 1 if options.quick else None]:
         found[name] = study(name.split(":")[0], case())

@@ -5,9 +5,7 @@ python -m validation.real_arms.study [--quick] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import tempfile
 import time
 from dataclasses import asdict
@@ -17,6 +15,7 @@ from typing import Any
 import numpy as np
 from validation.real_arms.arms import EMPS, EMPS_WHOLE, TX40, UR10E, Arm
 from validation.real_arms.metric import at_rest, low_passed, nmse, read_torques, stretches
+from validation.real_arms.options import parser_of
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.writing import write_diagnosis
@@ -98,11 +97,7 @@ def draw(tables: dict[str, dict[str, np.ndarray]], path: Path) -> None:
 
 def main() -> int:
     """Run the study; 0 if every line is passed."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="without the UR10e; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    options = parser.parse_args()
+    options = parser_of(__doc__, "without the UR10e").parse_args()
     arms: dict[str, Any] = {}
     tables = {}
     with tempfile.TemporaryDirectory() as scratch:

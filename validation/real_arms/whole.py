@@ -5,15 +5,14 @@ python -m validation.real_arms.whole [--quick] [--data DIR]
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from validation.real_arms.layers import BANDS, Case, cases, errors_of, study
+from validation.real_arms.options import parser_of
 from validation.real_arms.splits import splits, summary
 
 from lagnet.diagnosis.diagnose import diagnose
@@ -50,11 +49,7 @@ def whole(name: str, case: Case) -> dict[str, Any]:
 
 def main() -> int:
     """Run the study; 0 if no joint's identified layer is beyond 1.1 times least squares, nor full beyond 1.05."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="EMPS alone; writes nothing")
-    default = os.environ.get("LAGNET_DATA_DIR", str(HERE.parents[2] / "shared" / "data"))
-    parser.add_argument("--data", type=Path, default=Path(default), help="folder of the data sets (LAGNET_DATA_DIR)")
-    options = parser.parse_args()
+    options = parser_of(__doc__, "EMPS alone").parse_args()
     every = {**cases(options.data), **splits(options.data)}
     found: dict[str, Any] = {}
     for name in ["emps"] if options.quick else every:

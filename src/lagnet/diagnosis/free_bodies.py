@@ -15,10 +15,11 @@ import numpy as np
 
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.diagnosis.problem.residuals import stacked
+from lagnet.diagnosis.problem.residuals import power_of, stacked
 from lagnet.diagnosis.regression.library import of_motion_alone
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.state import DiagnosisState
+from lagnet.diagnosis.unexplained.remainder import Remainder, remainder_of
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, torque_along
@@ -68,12 +69,16 @@ def take_the_place_of_gains(beside: DiagnosisState, candidate: Candidate) -> boo
     """
     if 2 * gains_among(beside.effects) > gains_among(candidate.effects):
         return False
-    valid = np.concatenate([p.counts for p in candidate.segments("holdout")])
-    left = np.sum(candidate.residual("holdout") ** 2, axis=0) / np.maximum(1, valid.sum(axis=0))
-    links = np.array([joint.power for joint in beside.sizes])
-    floor = np.maximum(candidate.noise, 1e-12) ** 2
-    gain = np.sum(np.log(np.maximum(left, floor)) - np.log(np.maximum(links, floor)))
-    return are_scaled_everywhere(candidate) or bool(gain > BETTER)
+    if are_scaled_everywhere(candidate):
+        return True
+    gains = remainder_of(candidate.problem, candidate.effects)
+    return _log_error(gains, candidate.noise) - _log_error(beside.after, candidate.noise) > BETTER
+
+
+def _log_error(left: Remainder, noise: np.ndarray) -> float:
+    """Σ_j ln max(mean r_j², σ_j²) on held-out motion."""
+    power = [power_of(*left.holdout, joint) for joint in range(len(noise))]
+    return float(np.sum(np.log(np.maximum(power, np.maximum(noise, 1e-12) ** 2))))
 
 
 def gains_among(effects: Sequence[NamedEffect]) -> int:

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.free_bodies import against_given, beside_free_bodies, explains, with_nominal
+from lagnet.diagnosis.free_bodies import BETTER, against_given, beside_free_bodies, explains, with_nominal
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
@@ -31,7 +31,6 @@ PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower ban
 CLEARLY = 2.0  # times the noise that it must exceed
 FACTORS = (0.5, 0.25)  # of the bandwidth
 LEAST = 2.5  # [Hz]
-BETTER = np.log(3.0)  # by which the held-out errors of all joints together must fall: one joint's to a third
 HELD = 0.6  # of a sample: delays up to this may come from torques that are held, or stamped half a cycle off
 ALIKE = 0.25  # of the shift by which delays of single joints may differ from it
 SUSPECT = 2.0  # times the gain of the next best interval, from which the pipeline is run without the interval

@@ -69,23 +69,13 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
 def _fitted(
     problem: Problem, effects: Sequence[NamedEffect], pieces: list[FitSegment], groups: Sequence[TermGroup], rest: Rest
 ) -> Identified | None:
-    """The layer on some equations.
-
-    A joint whose rotor would be negative has speed that lags in its place. One whose friction would exceed its load has
-    none per load: no gear's does while it moves, and the load of a link that the model hardly has is next to nothing.
-    """
+    """The layer on some equations; a joint whose rotor would be negative has speed that lags in its place."""
     late: set[int] = set()
-    light: set[int] = set()
     while True:
         design = make_design(problem, pieces, [*groups, *lag_groups(problem, late)])
-        design = design.without(np.array([*_at(design, "rotor", late), *_at(design, "load", light)], dtype=int))
-        choice = choose(design)
+        design, choice = _chosen(design.without(_rotors(design, late)))
         if choice is None:
             return None
-        impossible = {t.joint for i, t in _columns_of(design, "load") if abs(design.unscaled(choice.ridge.x)[i]) > 1.0}
-        if impossible:
-            light |= impossible
-            continue
         negative = {t.joint for i, t in _columns_of(design, "rotor") if choice.ridge.x[i] < 0}
         layer, design, choice, rotor = _positive_definite(problem, effects, design, choice, rest)
         if rotor is None:
@@ -98,9 +88,22 @@ def _columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
     return [(design.n_bodies + i, t) for i, t in enumerate(design.terms) if t.kind == kind]
 
 
-def _at(design: Design, kind: str, joints: Collection[int]) -> list[int]:
-    """Index of each unknown that weights a function of some kind at one of some joints."""
-    return [i for i, t in _columns_of(design, kind) if t.joint in joints]
+def _rotors(design: Design, joints: Collection[int]) -> np.ndarray:
+    return np.array([i for i, t in _columns_of(design, "rotor") if t.joint in joints], dtype=int)
+
+
+def _chosen(design: Design) -> tuple[Design, Choice | None]:
+    """The solution, without friction per load where that would exceed the load; and the equations that it is of.
+
+    No gear's friction does while it moves. The load of a link that the model hardly has is next to nothing.
+    """
+    while (choice := choose(design)) is not None:
+        weights = design.unscaled(choice.ridge.x)
+        impossible = [i for i, _ in _columns_of(design, "load") if abs(weights[i]) > 1.0]
+        if not impossible:
+            break
+        design = design.without(np.array(impossible))
+    return design, choice
 
 
 def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLayer) -> bool:

@@ -29,8 +29,8 @@ def shifted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | flo
 def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
     """∂G/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
     tilts = [e for e in effects if e.effect == TILT]
-    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
-    bodies = [e for e in bodies if e.joint is None or e.joint >= joint]  # a joint carries none of the links before it
+    carried = [e for e in effects if e.joint is None or e.joint >= joint]  # a joint turns none of the links before it
+    bodies = [e for e in carried if e.effect in BODIES and e.interval is None]
     if not tilts and not bodies:
         return 0.0
     change = change_of_gravity(motion, tilts)

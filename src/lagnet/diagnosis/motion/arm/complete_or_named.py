@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.named_laws import with_named_laws
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.problem import MotionProblem
@@ -28,24 +29,25 @@ def no_worse_than_named(
         laws: nominal, shape (dof, len(LAW)), for joints that do not move.
         found: diagnoses of the joints that do.
     """
-    complete, named = laws.copy(), laws.copy()
+    complete, named = laws.copy(), with_named_laws(laws, found)
     for joint, d in found.items():
-        complete[joint], named[joint] = d.law, d.named_law
+        complete[joint] = d.law
     alone = len(found) == 1 and not named[:, [STIFFNESS, GAP]].any()
     if alone or np.array_equal(complete, named):
         return dict(found)
     held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found))
     floors = np.array([d.case.floor for d in found.values()])
 
-    def scores(arm: np.ndarray, at: int) -> np.ndarray:
-        return np.split(held.scores(held.errors(arm), floors), len(found))[at]
+    def scores(arm: np.ndarray) -> list[np.ndarray]:
+        return np.split(held.scores(held.errors(arm), floors), len(found))
 
-    used = complete
+    used, before = complete, scores(complete)
     for at, joint in enumerate(found):
         if np.array_equal(used[joint], named[joint]):
             continue
         other = used.copy()
         other[joint] = named[joint]
-        if float(np.mean(scores(used, at) - scores(other, at))) > 0.0:
-            used = other
+        after = scores(other)
+        if float(np.mean(before[at] - after[at])) > 0.0:
+            used, before = other, after
     return {j: replace(d, law=d.named_law) if np.array_equal(used[j], named[j]) else d for j, d in found.items()}

@@ -122,13 +122,20 @@ def fit_named_laws(
     return _with_intervals(problem, fitted, laws, out, open_)  # those of other joints, with more free, are no narrower
 
 
+def with_named_laws(laws: np.ndarray, found: Mapping[int, JointDiagnosis]) -> np.ndarray:
+    """The laws of all joints, those that were diagnosed with their named ones, shape (dof, len(LAW))."""
+    out = laws.copy()
+    for joint, d in found.items():
+        out[joint] = d.named_law
+    return out
+
+
 def _arm_of(
     problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
 ) -> ArmLaws | None:
     """The named laws with what is free in them, None where nothing is."""
-    laws, free = laws.copy(), {}
+    laws, free = with_named_laws(laws, found), {}
     for joint, diagnosis in found.items():
-        laws[joint] = diagnosis.named_law
         if groups := groups_of(diagnosis.case, diagnosis.named.effects):
             free[joint] = free_coordinates(groups, laws[joint], sizes_of(diagnosis.case.scales))
     return ArmLaws(ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found)), laws, free) if free else None
@@ -213,9 +220,10 @@ def _unexplained(
 
     The errors are those of held-out recordings, rolled out whole with all joints coupled.
     """
-    held, named, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy(), laws.copy()
+    held, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy()
     for joint, d in found.items():
-        named[joint], nominal[joint] = d.named_law, d.case.law
+        nominal[joint] = d.case.law
+    named = with_named_laws(laws, found)
     before, after = ([float(np.sqrt(np.mean(e**2))) for e in held.errors(x)] for x in (nominal, named))
     out = {}
     for (joint, d), was, is_ in zip(found.items(), before, after, strict=True):

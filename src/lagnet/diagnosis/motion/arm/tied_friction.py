@@ -15,13 +15,13 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.intervals import half_widths
-from lagnet.diagnosis.motion.arm.named_laws import ArmLaws, away_from_nominal
+from lagnet.diagnosis.motion.arm.named_laws import ArmLaws, away_from_nominal, with_named_laws
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.arm.secants import settled_secants
 from lagnet.diagnosis.motion.joint.fitting import free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
-from lagnet.diagnosis.motion.joint.refitting import disjoint, groups_of
+from lagnet.diagnosis.motion.joint.refitting import groups_of
 from lagnet.diagnosis.motion.joint.rivals import Comparison
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
@@ -44,9 +44,7 @@ def tie_dry_friction(
         laws: nominal, shape (dof, len(LAW)), for joints that do not move.
         found: diagnoses with intervals and complete laws.
     """
-    laws, out = laws.copy(), {}
-    for joint, d in found.items():
-        laws[joint] = d.named_law
+    laws, out = with_named_laws(laws, found), {}
     runs = ArmRuns(problem, runs_to_fit(problem, fitted), tuple(found))
     floors = np.array([d.case.floor for d in found.values()])
     for joint, d in found.items():
@@ -76,7 +74,7 @@ def _widths(
     Slopes of both are differences by the same torque, that of the part's own interval: differences of two sizes meet
     other starts of a joint that sticks, and would tell apart by chance what is one.
     """
-    groups, rivals = disjoint(groups_of(found.case, found.named.effects)), _rivals(found, effect)
+    groups, rivals = groups_of(found.case, found.named.effects), _rivals(found, effect)
     if not rivals or servo_effect(effect).frees[0] not in groups:
         return {}
     arm = ArmLaws(runs, laws, {joint: free_coordinates(groups, laws[joint], sizes_of(found.case.scales))})
