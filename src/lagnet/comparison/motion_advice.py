@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -109,6 +109,6 @@ def _apart(
     for value in ends:
         laws = model.laws.copy()
         laws[joint, k] = value
-        changed = ServoDrivenModel(model.nominal, laws, model.scale_is_set, model.voltage)
+        changed = replace(model, laws=laws)
         moved.append(changed.rollout(command, time, command[0])[:, joint])
     return float(np.sqrt(np.mean(np.clip(moved[1] - moved[0], -np.pi, np.pi) ** 2)))

@@ -33,7 +33,7 @@ def measured_load(
     return mass, load, slope
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def _slopes(tree, q, slope, work):  # pragma: no cover - compiled
     dof = q.shape[1]
     full, above, below, still = np.empty((dof, dof)), np.empty(dof), np.empty(dof), np.zeros(dof)
@@ -47,7 +47,7 @@ def _slopes(tree, q, slope, work):  # pragma: no cover - compiled
             slope[n, j] = (above[j] - below[j]) / (2.0 * PROBE)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def _along(tree, q, v, a, mass, load, work):  # pragma: no cover - compiled
     dof = q.shape[1]
     full, bias = np.empty((dof, dof)), np.empty(dof)

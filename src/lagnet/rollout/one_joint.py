@@ -94,7 +94,7 @@ def roll_out(parameters: np.ndarray, series: JointSeries, windows: Windows, step
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def _roll_sets(parameters, series, windows, step, out):  # pragma: no cover - compiled
     for s in range(parameters.shape[0]):
         for w in range(windows[0].size):

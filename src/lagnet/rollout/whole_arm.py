@@ -18,6 +18,7 @@ from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.damper import explicit_share
 from lagnet.rollout.driven import drive_torque
 from lagnet.rollout.rigid_bodies import dynamics, workspace
+from lagnet.rollout.surface import HARDNESS, height_above, sliding_friction
 from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest, yields
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.friction import dry_friction, falls_with_speed
@@ -52,6 +53,7 @@ def roll_out_arm(
     ratio: np.ndarray | None = None,
     gain: np.ndarray | None = None,
     enabled: np.ndarray | None = None,
+    surface: np.ndarray | None = None,
     step: float = 0.002,
 ) -> np.ndarray:
     """Positions at every sample of a command, from the first measured position on, shape (n, dof) [rad or m].
@@ -63,6 +65,7 @@ def roll_out_arm(
         q0: shape (dof,), start; v0: shape (dof,), its speed, at rest where None.
         ratio: shape (n, dof), voltage over nominal; gain: shape (n, dof), the controller's gains over
             those of the law; enabled: shape (n, dof), 1 where the drive gives torque.
+        surface: shape (len(SURFACE),), what a point of the arm may rest on; None: nothing.
         step: longest step of integration [s].
     """
     n, dof = command.shape
@@ -79,18 +82,21 @@ def roll_out_arm(
     start = (np.array(q0, dtype=float), np.array(zeros if v0 is None else v0, dtype=float))
     arrays = tree.arrays()
     bare = (*arrays[:6], np.zeros(dof), arrays[7])
-    _roll_arm(bare, np.ascontiguousarray(parameters, dtype=float), signals, start, step, workspace(dof), out)
+    touched = np.zeros(0) if surface is None else np.ascontiguousarray(surface, dtype=float)
+    laws = np.ascontiguousarray(parameters, dtype=float)
+    _roll_arm(bare, laws, signals, start, touched, step, workspace(dof), out)
     return out
 
 
-@njit(cache=True, error_model="numpy")
-def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no cover - compiled
+@njit(cache=True, error_model="numpy", nogil=True)
+def _roll_arm(tree, parameters, signals, start, surface, step, work, out):  # pragma: no cover - compiled
     time, command, integral, ratio, gain, enabled = signals
     q, v = start
     dof, last = q.size, time.size - 1
     mass, bias, a = np.empty((dof, dof)), np.empty(dof), np.empty((dof, dof))
     free, load, total, before = np.empty(dof), np.empty(dof), np.zeros(dof), np.empty(dof)
     motor, push = np.empty(dof), np.empty(dof)
+    slopes, height, hardness, rubbing = np.zeros((3, dof)), 0.0, 0.0, 0.0
     cursor = np.zeros(dof, dtype=np.int64)
     out[0] = q
     apart = np.zeros(dof, dtype=np.bool_)
@@ -109,6 +115,11 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
             before[j], cursor[j] = _integral(time[n] - delay, last, cursor[j], time, command, integral, j)
         for i in range(pieces):
             dynamics(tree, q, v, mass, bias, work)
+            if surface.size:
+                height, hardness = height_above(tree, surface, work, slopes), surface[HARDNESS]
+                rubbing = sliding_friction(surface, slopes, height, v)
+                for j in range(dof):
+                    height += 0.5 * h * slopes[0, j] * v[j]
             for j in range(dof):
                 p = parameters[j]
                 late = time[n] + (i + 1) * h - p[DELAY]
@@ -144,11 +155,26 @@ def _roll_arm(tree, parameters, signals, start, step, work, out):  # pragma: no 
                     a[j, m] = p[LOAD_GAIN] * mass[j, m]
                     free[j] += a[j, m] * v[m]
                 a[j, j] += p[ROTOR] + h * (1.0 - early) * damping + 0.25 * h * h * stiff
+            if rubbing > 0.0:
+                for j in range(dof):
+                    for m in range(dof):
+                        a[j, m] += h * rubbing * (slopes[1, j] * slopes[1, m] + slopes[2, j] * slopes[2, m])
             for j in range(dof):  # q moves half a step by the old speed, half by the new
                 q[j] += 0.5 * h * v[j]
                 angle[j] += 0.5 * h * w[j]
             twist = angle - q - 0.5 * h * (w - v)  # before the step
-            _settle(parameters, a, free, load, motor, push, h, v, (apart, rows, twist, w, sides))
+            _settle(
+                parameters,
+                a,
+                free,
+                load,
+                motor,
+                push,
+                h,
+                v,
+                (apart, rows, twist, w, sides),
+                (slopes[0], height, hardness),
+            )
             for j in range(dof):
                 q[j] += 0.5 * h * v[j]
                 angle[j] += 0.5 * h * w[j]
@@ -185,12 +211,13 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
 
 
 @njit(cache=True, error_model="numpy")
-def _settle(parameters, a, free, load, motor, push, h, v, motors):  # pragma: no cover - compiled
+def _settle(parameters, a, free, load, motor, push, h, v, motors, contact):  # pragma: no cover - compiled
     """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest.
 
     motors: of yielding transmissions, with their speeds and sides of contact, written in place.
     """
     apart, rows, twist, w, sides = motors
+    row, height, hardness = contact
     old, before = v.copy(), w.copy()
     for _ in range(SWEEPS):
         moved = 0.0
@@ -201,9 +228,9 @@ def _settle(parameters, a, free, load, motor, push, h, v, motors):  # pragma: no
                     rest -= a[j, m] * v[m]
                     alone -= a[j, m] * (v[m] - old[m])
             if apart[j]:
-                row = (rows[j, 0], rows[j, 1], rows[j, 2], rows[j, 3])
+                own = (rows[j, 0], rows[j, 1], rows[j, 2], rows[j, 3])
                 w[j], new, sides[j] = joined_speeds(
-                    parameters[j], row, a[j, j], rest, twist[j], before[j], old[j], load[j], motor[j], h
+                    parameters[j], own, a[j, j], rest, twist[j], before[j], old[j], load[j], motor[j], h
                 )
                 moved = max(moved, abs(new - v[j]))
                 v[j] = new
@@ -211,6 +238,18 @@ def _settle(parameters, a, free, load, motor, push, h, v, motors):  # pragma: no
             side = 1.0 if rest > 0.0 else -1.0
             dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
             new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]
+            if hardness > 0.0:
+                left = height
+                for m in range(v.size):
+                    if m != j:
+                        left += 0.5 * h * row[m] * v[m]
+                if left + 0.5 * h * row[j] * new < 0.0:
+                    pushed = rest - h * hardness * row[j] * left
+                    side = 1.0 if pushed > 0.0 else -1.0
+                    dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
+                    heavy = a[j, j] + 0.5 * h * h * hardness * row[j] * row[j]
+                    new = 0.0 if abs(pushed) <= dry else (pushed - side * dry) / heavy
+                    alone -= h * hardness * row[j] * min(0.0, left)
             passes = falls_with_speed(parameters[j]) and old[j] * new < 0.0
             if passes and abs(alone) <= h * dry_friction(parameters[j], 0.0, load[j], motor[j], side):
                 new = 0.0  # it rests between

@@ -15,6 +15,7 @@ from lagnet.errors import ModelError
 from lagnet.files import finite_json, write_whole
 from lagnet.models.corrected.folder import MOST_BYTES, write_description
 from lagnet.rigid_body.kinematic_tree import KinematicTree, kinematic_tree
+from lagnet.rollout.surface import BODY, FRICTION, HARDNESS, SURFACE
 from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.parameters import (
     COULOMB,
@@ -47,6 +48,8 @@ class ServoDrivenModel:
         laws: shape (dof, len(LAW)), see `lagnet.servos.parameters`; `rotor` stands for the robot's armature.
         scale_is_set: for each joint whether its torques are known in N m or only in proportion to kp.
         voltage: nominal supply [V], 0 where none was recorded.
+        surface: shape (len(SURFACE),), the level surface that the arm may touch, None where there is none; torques that
+            are asked for sample by sample are those of the free arm.
         source, sha256: what it was read from, "" if nothing.
     """
 
@@ -54,6 +57,7 @@ class ServoDrivenModel:
     laws: np.ndarray
     scale_is_set: tuple[bool, ...]
     voltage: float = 0.0
+    surface: np.ndarray | None = None
     source: str = ""
     sha256: str = ""
     kind: str = field(default="corrected", init=False)
@@ -109,7 +113,7 @@ class ServoDrivenModel:
             raise ValueError(f"shapes are {shapes}, expected (n, {self.n_dof}), (n,), ({self.n_dof},)")
         ratio = None if voltage is None or not self.voltage else np.asarray(voltage, dtype=float) / self.voltage
         gains = np.full(command.shape, gain)
-        signals = {"ratio": ratio, "enabled": enabled, "gain": gains, "v0": v0, "step": step}
+        signals = {"ratio": ratio, "enabled": enabled, "gain": gains, "v0": v0, "surface": self.surface, "step": step}
         return roll_out_arm(self.tree, self.laws, time, command, np.asarray(q0, dtype=float), **signals)
 
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
@@ -175,6 +179,7 @@ def save_servo_driven(model: ServoDrivenModel, folder: str | Path, found: Mappin
         "scale_is_set": list(model.scale_is_set),
         "laws": laws,
         "units": {p.name: p.unit for p in LAW},
+        **({} if model.surface is None else {"surface": dict(zip(SURFACE, map(float, model.surface), strict=True))}),
         **({} if found is None else {"found": found}),
     }
     write_whole(out / FILE, finite_json(text))
@@ -197,6 +202,7 @@ def load_servo_driven(folder: str | Path, load_robot: Any) -> ServoDrivenModel:
         laws = np.array([[float(law.get(p.name, p.neutral)) for p in LAW] for law in text["laws"]])
         scales, voltage = tuple(bool(x) for x in text["scale_is_set"]), float(text["voltage"])
         robot = load_robot(Path(folder) / Path(str(text["robot"])).name)
+        surface = _surface(text.get("surface"), robot.n_dof)
         fits = laws.shape == (robot.n_dof, len(NAMES)) and len(scales) == robot.n_dof and np.isfinite(laws).all()
         if not fits or list(robot.joints) != list(text["joints"]) or not math.isfinite(voltage):
             raise ValueError("its joints are not those of its robot")
@@ -205,4 +211,14 @@ def load_servo_driven(folder: str | Path, load_robot: Any) -> ServoDrivenModel:
             raise ValueError("a parameter is out of its bounds")
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
-    return ServoDrivenModel(robot, laws, scales, voltage, source=str(folder))
+    return ServoDrivenModel(robot, laws, scales, voltage, surface, source=str(folder))
+
+
+def _surface(given: Any, n_dof: int) -> np.ndarray | None:
+    if given is None:
+        return None
+    surface = np.array([float(given[name]) for name in SURFACE])
+    whole = surface[BODY] == int(surface[BODY]) and 0 <= surface[BODY] < n_dof
+    if not np.isfinite(surface).all() or not whole or not surface[HARDNESS] > 0.0 or surface[FRICTION] < 0.0:
+        raise ValueError("its surface is none that an arm could touch")
+    return surface
