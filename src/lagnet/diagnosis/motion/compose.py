@@ -16,6 +16,8 @@ from lagnet.diagnosis.motion.joint.rivals import Comparison
 from lagnet.diagnosis.motion.payload.entry import payload_abstention, payload_effect
 from lagnet.diagnosis.motion.payload.found import PayloadFound
 from lagnet.diagnosis.motion.problem import motion_rates
+from lagnet.diagnosis.motion.surface.entry import surface_abstentions, surface_effects
+from lagnet.diagnosis.motion.surface.found import SurfaceFound
 from lagnet.diagnosis.motion.verdict import MotionVerdict, PositionErrors
 from lagnet.diagnosis.motion.wording import as_ratio, explain_effect
 from lagnet.diagnosis.verdict.inputs import nominal_entry, recording_entries
@@ -47,6 +49,7 @@ def compose_motion_verdict(
     rollouts: Rollouts,
     seed: int,
     payload: PayloadFound | None = None,
+    surface: SurfaceFound | None = None,
 ) -> MotionVerdict:
     """All parts of the verdict; rollouts are nominal, corrected and named, one of each held-out trajectory."""
     parts = [part for recording in held for part in recording.parts()]
@@ -62,6 +65,7 @@ def compose_motion_verdict(
     variance = np.maximum(np.var(measured, axis=0), floors**2)
     effects = [e for j, d in enumerate(found) if d is not None for e in _effects(joints[j], d, servo, j)]
     effects += [] if payload is None else [payload_effect(payload)]
+    effects += surface_effects(surface)
     verdict = Verdict(
         lagnet_version=__version__,
         seed=seed,
@@ -93,7 +97,7 @@ def compose_motion_verdict(
             )
             for j in range(len(joints))
         ),
-        abstentions=_abstentions(joints, found, servo),
+        abstentions=(*_abstentions(joints, found, servo), *surface_abstentions(surface)),
         warnings=tuple(dict.fromkeys([*servo.warnings, *(w for r in (*fit, *held) for w in r.warnings)])),
     )
     bands = tuple(None if d is None or d.rest is None else asdict(d.rest) for d in found)

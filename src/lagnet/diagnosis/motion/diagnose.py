@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -13,10 +13,11 @@ from lagnet.diagnosis.motion.arm.named_laws import fit_named_laws
 from lagnet.diagnosis.motion.arm.tied_friction import tie_dry_friction
 from lagnet.diagnosis.motion.compose import compose_motion_verdict
 from lagnet.diagnosis.motion.joint.cases import joint_case
-from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis, diagnose_joint
 from lagnet.diagnosis.motion.payload.judgement import judge_payload
 from lagnet.diagnosis.motion.problem import MotionProblem, median_voltage, pose_motion_problem, start_speed
+from lagnet.diagnosis.motion.surface.judgement import judge_surface
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.changed_bodies import Correction
@@ -29,6 +30,7 @@ from lagnet.rigid_body.robot import Robot
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KD, KP
 from lagnet.servos.servo_file import servo_of_values
+from lagnet.side_by_side import side_by_side
 
 LEAST_STEPS = 3  # changes of position that a joint must show to be diagnosed
 REFERENCE = 1.0  # [N m/rad] kp where nothing determines the scale of torques
@@ -108,21 +110,27 @@ def diagnose_motion(
     payload, beside = judge_payload(problem, len(fit_on), servo, apart, limits)
     joints = tuple(beside.get(i) for i in range(len(joints)))
     loaded = bodies if payload is None else with_body(bodies, payload.body)
+    body = None if payload is None else payload.body
+    given = robot.surface if isinstance(robot, ServoDrivenModel) else None
+    contact = None if given is not None else judge_surface(problem, len(fit_on), servo.laws, beside, body, limits)
+    surface = given if contact is None else contact.surface
     scales = tuple(j is not None and j.case.scale_is_set for j in joints)
     supply = median_voltage(fit_on)
     pairs = [(servo.laws[i], servo.laws[i]) if j is None else (j.nominal, j.law) for i, j in enumerate(joints)]
     laws = [_as_given(servo, i, nominal) for i, (nominal, _) in enumerate(pairs)]
-    nominal = ServoDrivenModel(bodies, np.array(laws), scales, supply)
-    corrected = ServoDrivenModel(loaded, np.array([law for _, law in pairs]), scales, supply)
+    nominal = ServoDrivenModel(bodies, np.array(laws), scales, supply, given)
+    corrected = ServoDrivenModel(loaded, np.array([law for _, law in pairs]), scales, supply, surface)
     named_laws = np.array([servo.laws[i] if j is None else j.named_law for i, j in enumerate(joints)])
-    named = ServoDrivenModel(loaded, named_laws, scales, supply)
+    named = ServoDrivenModel(loaded, named_laws, scales, supply, surface)
     factors = factors or [1.0] * (len(fit_on) + len(held))
     starts = [(r, factors[len(fit_on) + i], fit_on[i] if continued else None) for i, r in enumerate(held)]
     before, after, with_names = (
         tuple(_roll(m, part, gain, run) for r, gain, run in starts for part in r.parts())
         for m in (nominal, corrected, named)
     )
-    verdict = compose_motion_verdict(robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload)
+    verdict = compose_motion_verdict(
+        robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload, contact
+    )
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
 
 
@@ -183,28 +191,33 @@ def _diagnose_joints(
     problem: MotionProblem, fitted: int, servo: NominalServo, limits: SelectionLimits
 ) -> tuple[JointDiagnosis | None, ...]:
     """First the joints whose loads determine the scale of torques: their gain is the reference of the others."""
-    cases = {}
-    for joint in range(len(problem.joints)):
-        q = problem.series[joint].q
-        if np.ptp(q) > 1e-6 and np.sum(np.abs(np.diff(q)) > 1e-9) > LEAST_STEPS:
-            cases[joint] = joint_case(problem, fitted, joint, servo, limits, REFERENCE)
-    found: dict[int, JointDiagnosis] = {}
-    for joint, case in cases.items():
-        if case.scale_is_set:
-            found[joint] = diagnose_joint(problem, fitted, joint, case)
+    moving = [j for j in range(len(problem.joints)) if _moves(problem.series[j].q)]
+    of_given = side_by_side(lambda j: joint_case(problem, fitted, j, servo, limits, REFERENCE), moving)
+    cases = dict(zip(moving, of_given, strict=True))
+    found = _diagnosed(problem, fitted, {j: case for j, case in cases.items() if case.scale_is_set})
     share = _gain_share(found, servo)
-    for joint, case in cases.items():
-        if joint in found:
-            continue
+    gain = float(np.median([d.law[KP] for d in found.values()])) if found else REFERENCE
+
+    def beside_them(joint: int) -> JointCase:
         assumed = servo
         if share is not None and servo.known[joint]:
             laws = servo.laws.copy()
             laws[joint, [KP, KD, INDEX["ki"]]] *= share
             assumed = NominalServo(laws, servo.known, servo.source)
-        gain = np.median([j.law[KP] for j in found.values()]) if found else REFERENCE
-        case = joint_case(problem, fitted, joint, assumed, limits, float(gain))
-        found[joint] = diagnose_joint(problem, fitted, joint, case)
+        return joint_case(problem, fitted, joint, assumed, limits, gain)
+
+    others = [joint for joint in moving if joint not in found]
+    found |= _diagnosed(problem, fitted, dict(zip(others, side_by_side(beside_them, others), strict=True)))
     return tuple(found.get(joint) for joint in range(len(problem.joints)))
+
+
+def _moves(q: np.ndarray) -> bool:
+    return bool(np.ptp(q) > 1e-6 and np.sum(np.abs(np.diff(q)) > 1e-9) > LEAST_STEPS)
+
+
+def _diagnosed(problem: MotionProblem, fitted: int, cases: Mapping[int, JointCase]) -> dict[int, JointDiagnosis]:
+    found = side_by_side(lambda item: diagnose_joint(problem, fitted, *item), list(cases.items()))
+    return dict(zip(cases, found, strict=True))
 
 
 def _gain_share(found: dict[int, JointDiagnosis], servo: NominalServo) -> float | None:

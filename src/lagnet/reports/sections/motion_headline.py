@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
+from lagnet.diagnosis.motion.surface.entry import NAME
+from lagnet.reports.contents.findings import WHOLE_ARM
 from lagnet.reports.page import Section, section
 
 
@@ -18,7 +20,7 @@ def build(verdict: Mapping[str, Any], diagnosis: MotionDiagnosis) -> Section:
     worst = max(fits, key=lambda f: f["rmse_corrected"])
     causes: dict[str, list[dict[str, Any]]] = {}
     for effect in verdict["effects"]:
-        causes.setdefault(effect["joint"], []).append(effect)
+        causes.setdefault(effect["joint"] or WHOLE_ARM, []).append(effect)
     source = {
         "mjcf": "The nominal servos are those of the MJCF's actuators.",
         "file": "The nominal servos are those of the file that was given.",
@@ -38,4 +40,5 @@ def build(verdict: Mapping[str, Any], diagnosis: MotionDiagnosis) -> Section:
         unset=unset,
         warnings=verdict["warnings"],
         n_abstentions=len(verdict["abstentions"]),
+        unnamed=[a["reason"] for a in verdict["abstentions"] if a["effect"] == NAME],
     )

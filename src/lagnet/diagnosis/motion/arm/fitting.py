@@ -6,7 +6,7 @@ as one of large ones and a contact that nothing explains bends no value.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -48,6 +48,11 @@ def cost_of(errors: list[np.ndarray], scales: np.ndarray) -> float:
     return found if np.isfinite(found) else np.inf
 
 
+def robust_scales(errors: Sequence[np.ndarray], floors: np.ndarray) -> np.ndarray:
+    """Robust scale of every joint's errors, at least its floor, shape (joints,)."""
+    return np.array([robust_scale(e, f) for e, f in zip(errors, floors, strict=True)])
+
+
 def fit_values(
     errors: Errors,
     sensitivities: Sensitivities,
@@ -70,7 +75,7 @@ def fit_values(
     """
     values = nearest(start)
     for _ in range(ROUNDS):
-        scales = np.array([robust_scale(e, f) for e, f in zip(errors(values), floors, strict=True)])
+        scales = robust_scales(errors(values), floors)
         values = _fitted(errors, sensitivities, values, sizes, scales, nearest, iterations)
     return values
 

@@ -32,12 +32,15 @@ class ArmRuns:
     runs: tuple[Run, ...]
     joints: tuple[int, ...]
 
-    def errors(self, laws: np.ndarray, body: np.ndarray | None = None) -> list[np.ndarray]:
+    def errors(
+        self, laws: np.ndarray, body: np.ndarray | None = None, surface: np.ndarray | None = None
+    ) -> list[np.ndarray]:
         """Predicted less measured positions of each joint over all runs, each of shape (n,) [rad or m].
 
         Args:
             laws: shape (dof, len(LAW)).
             body: shape (10,), inertial parameters added to the last link.
+            surface: shape (len(SURFACE),), what a point of the arm may rest on; None: nothing.
         """
         series, bodies = self.problem.series, self.problem.tree.bodies.copy()
         begun = {run.first: v for run, v in zip(self.problem.runs, self.problem.start_speed, strict=True)}
@@ -51,7 +54,7 @@ class ArmRuns:
                 for name in ("command", "q", "ratio", "gain", "enabled")
             )
             v0 = begun.get(run.first, self.problem.speed[run.first])
-            signals = {"v0": v0, "ratio": ratio, "gain": gain, "enabled": enabled, "step": STEP}
+            signals = {"v0": v0, "ratio": ratio, "gain": gain, "enabled": enabled, "surface": surface, "step": STEP}
             out.append(roll_out_arm(tree, laws, series[0].time[rows], command, q[0], **signals) - q)
         return [np.concatenate([e[:, j] for e in out]) for j in self.joints]
 
@@ -74,15 +77,20 @@ def runs_to_fit(problem: MotionProblem, fitted: int) -> tuple[Run, ...]:
     runs = [run for run in problem.runs if run.recording < fitted]
     if sum(run.last - run.first + 1 for run in runs) <= SAMPLES:
         return tuple(runs)
-    pieces = [piece for run in runs for piece in _pieces(problem, run)]
+    pieces = pieces_of(problem, runs)
     longest = max(piece.last - piece.first + 1 for piece in pieces)
     chosen = spread_rows(len(pieces), max(1, SAMPLES // longest))
     return tuple(pieces[i] for i in chosen)
 
 
-def _pieces(problem: MotionProblem, run: Run) -> list[Run]:
+def pieces_of(problem: MotionProblem, runs: Sequence[Run], length: float = PIECE) -> list[Run]:
+    """Pieces of about `length` seconds, each from a state that is sure."""
+    return [piece for run in runs for piece in _pieces(problem, run, length)]
+
+
+def _pieces(problem: MotionProblem, run: Run, length: float) -> list[Run]:
     time = problem.series[0].time
-    count = max(1, round(float(time[run.last] - time[run.first]) / PIECE))
+    count = max(1, round(float(time[run.last] - time[run.first]) / length))
     edges = surest_edges(problem.speed[run.first : run.last + 1], count) + run.first
     return [Run(run.recording, int(a), int(b)) for a, b in pairwise(edges) if b > a]
 
