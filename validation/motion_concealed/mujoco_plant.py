@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -20,7 +21,18 @@ from validation.motion_concealed.causes import (
 STEP = 2.5e-4  # [s] of the engine
 RIGID = [0.9999, 0.9999, 0.001, 0.5, 2.0]  # solimp of dry friction, which else creeps, and of stops
 STOP = [2.0 * STEP, 1.0]  # solref of dry friction: MuJoCo's own 0.02 s make it viscous at low speed
+BALL = 0.004  # [m] radius of what touches a table
+RUBBING = 0.2  # friction of a table
 TWIST = "_twist"  # ending of the joint between a motor and its link
+
+
+@dataclass(frozen=True)
+class Table:
+    """A level plane: height of the point that touches it [m], the joint that moves it, and where it is there [m]."""
+
+    height: float
+    joint: int
+    point: tuple[float, float, float]
 
 
 class MujocoPlant:
@@ -30,11 +42,12 @@ class MujocoPlant:
         robot: the nominal one; its file is what MuJoCo reads.
         law: of every servo.
         cause: what is hidden.
+        table: what a point of the arm may touch.
     """
 
-    def __init__(self, robot: Any, law: dict[str, float], cause: Cause | None):
+    def __init__(self, robot: Any, law: dict[str, float], cause: Cause | None, table: Table | None = None):
         self.law, self.cause = law, cause
-        self.model = _model(robot, law, cause)
+        self.model = _model(robot, law, cause, table)
         self.data = mujoco.MjData(self.model)
         places = [self.model.joint(name) for name in robot.joints]
         self.at, self.dof = np.array([j.qposadr[0] for j in places]), np.array([j.dofadr[0] for j in places])
@@ -76,7 +89,7 @@ class MujocoPlant:
         self.data.qfrc_applied[dof] = self.law["kp"] * (ctrl[j] - q) - self.law["kd"] * v
 
 
-def _model(robot: Any, law: dict[str, float], cause: Cause | None) -> mujoco.MjModel:
+def _model(robot: Any, law: dict[str, float], cause: Cause | None, table: Table | None = None) -> mujoco.MjModel:
     """The nominal bodies with their servos and the cause."""
     spec = mujoco.MjSpec.from_file(str(robot.source))
     for part in (*spec.actuators, *spec.geoms, *spec.meshes):
@@ -98,6 +111,8 @@ def _model(robot: Any, law: dict[str, float], cause: Cause | None) -> mujoco.MjM
         twist.armature = 0.0  # of a default class of the file
     for name in robot.joints:  # before it is compiled: regularisation of friction goes by the inertia of each joint
         spec.joint(name).armature = law["rotor"]
+    if table is not None:
+        _lay(spec, robot.joints[table.joint], table)
     spec.option.timestep, spec.option.integrator = STEP, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     model = spec.compile()
     model.jnt_limited[:] = 0
@@ -108,6 +123,17 @@ def _model(robot: Any, law: dict[str, float], cause: Cause | None) -> mujoco.MjM
     if cause is not None and apart is not None:
         _join(model, model.joint(robot.joints[apart] + TWIST), model.joint(robot.joints[apart]), cause)
     return model
+
+
+def _lay(spec: mujoco.MjSpec, joint: str, table: Table) -> None:
+    """A plane, and a small ball at the point that touches it; no other pair touches."""
+    seen = {"contype": 1, "conaffinity": 1, "friction": [RUBBING, 0.0, 0.0], "solref": STOP, "solimp": RIGID}
+    at = [0.0, 0.0, table.height - BALL]
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[2.0, 2.0, 0.1], pos=at, **seen)
+    size = [BALL, 0.0, 0.0]
+    spec.joint(joint).parent.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_SPHERE, size=size, pos=list(table.point), mass=0.0, **seen
+    )
 
 
 def _join(model: mujoco.MjModel, twist: Any, motor: Any, cause: Cause) -> None:

@@ -59,7 +59,7 @@ def plant(seed: int, index: int, kind: str, effect: str | None, seconds: float, 
     recordings = []
     for i in range(3):
         real = BulletPlant(robot, body, law, cause, folder) if by_bullet else MujocoPlant(robot, law, cause)
-        recordings.append(_record(real, robot, cause, seconds, int(rng.integers(1 << 30)), i))
+        recordings.append(record(real, robot, cause, seconds, int(rng.integers(1 << 30)), i))
         if isinstance(real, BulletPlant):
             real.close()
     given = {name: dict(law) for name in robot.joints}
@@ -70,9 +70,10 @@ def plant(seed: int, index: int, kind: str, effect: str | None, seconds: float, 
     return Plant(f"{kind}_{index}", robot, servo, tuple(recordings), cause)
 
 
-def _record(
+def record(
     real: MujocoPlant | BulletPlant, robot: Any, cause: Cause | None, seconds: float, seed: int, index: int
 ) -> Recording:
+    """What encoders and commands of a plant show over so many seconds; seed: of the commands, index: of the name."""
     rng, time = np.random.default_rng(seed), np.arange(0.0, seconds, SAMPLE)
     command, q = commands(rng, time, robot), np.empty((time.size, robot.n_dof))
     late = round(cause.value / STEP) if cause is not None and cause.effect == "command_delay" else 0
