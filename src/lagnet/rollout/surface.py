@@ -108,3 +108,20 @@ def sliding_friction(surface, slopes, height, v):  # pragma: no cover - compiled
         along += slopes[1, j] * v[j]
         across += slopes[2, j] * v[j]
     return -surface[FRICTION] * surface[HARDNESS] * height / max(sqrt(along * along + across * across), SLOW)
+
+
+@njit(cache=True, error_model="numpy")
+def pressed(contact, v, j, new, h):  # pragma: no cover - compiled
+    """What the surface adds to inertia and push of joint j, where the point is below it at that joint's new speed.
+
+    contact: ∂z/∂q, height at the end of the step if all joints stood still in its second half, and hardness.
+    """
+    slopes, left, hardness = contact
+    if hardness == 0.0:
+        return 0.0, 0.0
+    for m in range(v.size):
+        if m != j:
+            left += 0.5 * h * slopes[m] * v[m]
+    if left + 0.5 * h * slopes[j] * new >= 0.0:
+        return 0.0, 0.0
+    return 0.5 * h * h * hardness * slopes[j] * slopes[j], -h * hardness * slopes[j] * left

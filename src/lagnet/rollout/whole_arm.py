@@ -18,7 +18,7 @@ from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.damper import explicit_share
 from lagnet.rollout.driven import drive_torque
 from lagnet.rollout.rigid_bodies import dynamics, workspace
-from lagnet.rollout.surface import HARDNESS, height_above, sliding_friction
+from lagnet.rollout.surface import HARDNESS, height_above, pressed, sliding_friction
 from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest, yields
 from lagnet.servos.command_delay import command_integral
 from lagnet.servos.friction import dry_friction, falls_with_speed
@@ -214,10 +214,9 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
 def _settle(parameters, a, free, load, motor, push, h, v, motors, contact):  # pragma: no cover - compiled
     """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest.
 
-    motors: of yielding transmissions, with their speeds and sides of contact, written in place.
+    motors: of yielding transmissions, with their speeds and sides of contact, written in place; contact: see `pressed`.
     """
     apart, rows, twist, w, sides = motors
-    row, height, hardness = contact
     old, before = v.copy(), w.copy()
     for _ in range(SWEEPS):
         moved = 0.0
@@ -235,21 +234,11 @@ def _settle(parameters, a, free, load, motor, push, h, v, motors, contact):  # p
                 moved = max(moved, abs(new - v[j]))
                 v[j] = new
                 continue
-            side = 1.0 if rest > 0.0 else -1.0
-            dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
-            new = 0.0 if abs(rest) <= dry else (rest - side * dry) / a[j, j]
-            if hardness > 0.0:
-                left = height
-                for m in range(v.size):
-                    if m != j:
-                        left += 0.5 * h * row[m] * v[m]
-                if left + 0.5 * h * row[j] * new < 0.0:
-                    pushed = rest - h * hardness * row[j] * left
-                    side = 1.0 if pushed > 0.0 else -1.0
-                    dry = h * dry_friction(parameters[j], old[j], load[j], motor[j], side)
-                    heavy = a[j, j] + 0.5 * h * h * hardness * row[j] * row[j]
-                    new = 0.0 if abs(pushed) <= dry else (pushed - side * dry) / heavy
-                    alone -= h * hardness * row[j] * min(0.0, left)
+            new, side = _slowed(parameters[j], old[j], load[j], motor[j], rest, a[j, j], h)
+            heavier, pushed = pressed(contact, v, j, new, h)
+            if heavier > 0.0:
+                new, side = _slowed(parameters[j], old[j], load[j], motor[j], rest + pushed, a[j, j] + heavier, h)
+                alone += pushed if pushed * contact[0][j] > 0.0 else 0.0
             passes = falls_with_speed(parameters[j]) and old[j] * new < 0.0
             if passes and abs(alone) <= h * dry_friction(parameters[j], 0.0, load[j], motor[j], side):
                 new = 0.0  # it rests between
@@ -257,3 +246,11 @@ def _settle(parameters, a, free, load, motor, push, h, v, motors, contact):  # p
             v[j] = new
         if moved < STILL:
             break
+
+
+@njit(cache=True, error_model="numpy")
+def _slowed(p, v, load, motor, rest, inertia, h):  # pragma: no cover - compiled
+    """Speed of a joint that `rest` would push to rest / inertia, with its dry friction; the side it is pushed to."""
+    side = 1.0 if rest > 0.0 else -1.0
+    dry = h * dry_friction(p, v, load, motor, side)
+    return (0.0 if abs(rest) <= dry else (rest - side * dry) / inertia), side
