@@ -88,6 +88,18 @@ def test_far_below_the_arm_a_surface_changes_nothing():
     assert np.array_equal(free, above)
 
 
+def test_without_weight_there_is_no_level():
+    robot = load_description("ur5")
+    tree = kinematic_tree(robot.with_gravity(np.zeros(3)))
+    laws = np.tile(law_vector(kp=300.0, kd=20.0, rotor=0.5), (6, 1))
+    command = np.full((TIME.size, 6), 0.3)
+    free, above = (
+        roll_out_arm(tree, laws, TIME, command, np.zeros(6), surface=s)
+        for s in (None, np.array([5.0, 0.0, 0.0, 0.0, 1.0, HARD, 0.2]))
+    )
+    assert np.array_equal(free, above)
+
+
 def test_a_block_that_slides_on_it_is_braked_by_its_weight():
     """Two slides: the mass rests on the floor, and slides on it by its first speed until μ g has used it up."""
     body = np.array([[0.0] * 10, [MASS, 0.0, 0.0, 0.0, 1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]])

@@ -65,7 +65,8 @@ def roll_out_arm(
         q0: shape (dof,), start; v0: shape (dof,), its speed, at rest where None.
         ratio: shape (n, dof), voltage over nominal; gain: shape (n, dof), the controller's gains over
             those of the law; enabled: shape (n, dof), 1 where the drive gives torque.
-        surface: shape (len(SURFACE),), what a point of the arm may rest on; None: nothing.
+        surface: shape (len(SURFACE),), what a point of the arm may rest on; None: nothing. A joint whose
+            transmission yields does not feel it.
         step: longest step of integration [s].
     """
     n, dof = command.shape
@@ -82,7 +83,8 @@ def roll_out_arm(
     start = (np.array(q0, dtype=float), np.array(zeros if v0 is None else v0, dtype=float))
     arrays = tree.arrays()
     bare = (*arrays[:6], np.zeros(dof), arrays[7])
-    touched = np.zeros(0) if surface is None else np.ascontiguousarray(surface, dtype=float)
+    nothing = surface is None or not np.any(tree.gravity)  # without weight there is no up
+    touched = np.zeros(0) if nothing else np.ascontiguousarray(surface, dtype=float)
     laws = np.ascontiguousarray(parameters, dtype=float)
     _roll_arm(bare, laws, signals, start, touched, step, workspace(dof), out)
     return out

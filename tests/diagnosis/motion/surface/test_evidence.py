@@ -58,7 +58,7 @@ def test_it_is_an_effect_or_an_abstention_with_its_height(named):
     values = {"px": 0.0, "py": 0.0, "pz": -0.1, "h": 0.012, "k": 900.0, "mu": 0.2}
     ends = {n: (x - 0.01, x + 0.01) for n, x in values.items()}
     surface = np.array([1.0, *values.values()])
-    found = SurfaceFound(surface, "wrist", values, ends, named, 0.8, 6.0, (4e-4, 1e-4), 0.5, True)
+    found = SurfaceFound(surface, "wrist", values, ends, named, 6.0, (4e-4, 1e-4), 0.5, True)
     effects, abstentions = surface_effects(found), surface_abstentions(found)
     assert [e.effect for e in effects] == [NAME] * named
     assert [a.effect for a in abstentions] == [NAME] * (not named)

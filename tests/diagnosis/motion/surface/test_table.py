@@ -79,3 +79,9 @@ def test_without_a_table_no_surface_is_in_the_correction(tmp_path):
     found = diagnosed(tmp_path, "", dry=0.1)
     assert found.corrected.surface is None
     assert all(e.effect != "surface_contact" for e in (*found.effects, *found.verdict.verdict.abstentions))
+
+
+def test_one_short_recording_has_no_halves_and_is_diagnosed_all_the_same(tmp_path):
+    real, nominal = described(tmp_path, "real", PLANE), load_description(described(tmp_path, "nominal", ""))
+    found = diagnose_motion([recorded(real, 7.0, 1)], nominal)
+    assert all(np.isfinite(e.rmse_corrected) for e in found.verdict.errors)

@@ -18,8 +18,8 @@ class SurfaceFound:
         values: px, py, pz [m] in that joint's frame, h [m] above the base's origin, k [N/m], μ.
         intervals: 95 %, by name.
         named: whether it is a claim, or a part of the correction alone.
-        gain, errors: of the score over the same correction without it, where it touches motion that was not fitted, and
-            that gain over its standard error over blocks of time.
+        errors: gain of the score over the same correction without it, where it touches motion that was not fitted, over
+            the standard error of that gain over blocks of time.
         power: mean squared error over the variance of the motion, without and with it, in the same blocks.
         share: of the nominal arm's squared error in the same blocks that it takes away.
         scale_is_set: whether k is in N/m, or only in proportion to kp.
@@ -30,7 +30,6 @@ class SurfaceFound:
     values: Mapping[str, float]
     intervals: Mapping[str, tuple[float, float]]
     named: bool
-    gain: float
     errors: float
     power: tuple[float, float]
     share: float

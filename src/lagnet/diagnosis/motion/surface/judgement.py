@@ -2,7 +2,7 @@
 
 A table pushes several joints at once, only in low poses and only upwards: no law of a servo does, and joint by joint it
 is told as friction. It is fitted to the fitted recordings and judged on others: each half of them by the other half,
-and the recordings that are held out. Source of the law: Hunt & Crossley 1975, without damping.
+and the recordings that are held out.
 """
 
 from __future__ import annotations
@@ -114,10 +114,12 @@ def _by_halves(
     starts: list[np.ndarray],
     floors: np.ndarray,
 ) -> list[tuple[Touched, np.ndarray]]:
-    """Evidence on each half of the fitted runs from a surface fitted to the other half, and that surface."""
+    """Evidence on each half of the fitted runs from a surface fitted to the other half, and that one; none of one run."""
     halves, out = _halves(data, surface), []
+    if not all(half.runs for half in halves):
+        return []
     for fit, other in (halves, halves[::-1]):
-        for found in fit_surfaces(fit, laws[1], body, starts, floors, FEW) if other.runs else []:
+        for found in fit_surfaces(fit, laws[1], body, starts, floors, FEW):
             out.append((touched(other, laws, body, found, floors), found))
     return out
 
@@ -163,7 +165,7 @@ def _found(
     name = data.problem.joints[int(surface[BODY])]
     scale = all(d.case.scale_is_set for d in found.values())
     sides = (float(power[0]), float(power[1]))
-    return SurfaceFound(surface, name, values, ends, evidence.is_named(limits), *evidence.gain, sides, share, scale)
+    return SurfaceFound(surface, name, values, ends, evidence.is_named(limits), evidence.gain[1], sides, share, scale)
 
 
 def _half_widths(
