@@ -20,13 +20,13 @@ def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[
     Raises:
         Exception: the first that an item raised.
     """
-    threads = min(cores(), len(items))
+    threads = min(usable_cores(), len(items))
     if threads < 2 or threading.current_thread() is not threading.main_thread():
         return [work(item) for item in items]
     with ThreadPoolExecutor(threads, thread_name_prefix="lagnet") as pool:
         return list(pool.map(work, items))
 
 
-def cores() -> int:
-    """Cores that this process may use."""
+def usable_cores() -> int:
+    """Cores that this process may run on."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

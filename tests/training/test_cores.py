@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lagnet.training.cores import mesh_for, parts_of, usable_cores
+from lagnet.side_by_side import usable_cores
+from lagnet.training.cores import mesh_for, parts_of
 
 pytestmark = pytest.mark.slow
 

@@ -20,6 +20,7 @@ from jax.sharding import PartitionSpec as Spec
 from jaxtyping import Array
 
 from lagnet.models.devices import chosen_devices
+from lagnet.side_by_side import usable_cores
 
 ROWS = "rows"
 FLAG = "xla_force_host_platform_device_count"
@@ -45,11 +46,6 @@ def let_jax_see_cores(cores: int | None = None) -> int:
         with suppress(RuntimeError):  # JAX is in use: what it has stays
             jax.config.update("jax_num_cpu_devices", cores or min(usable_cores(), MOST))
     return len(jax.local_devices())
-
-
-def usable_cores() -> int:
-    """Cores that this process may run on."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def parts_of(batch: int) -> int:
