@@ -114,7 +114,7 @@ def _by_halves(
     starts: list[np.ndarray],
     floors: np.ndarray,
 ) -> list[tuple[Touched, np.ndarray]]:
-    """Evidence on each half of the fitted runs from a surface fitted to the other half, and that one; none of one run."""
+    """Evidence on each half of the fitted runs from a surface fitted to the other, and that one; none of one run."""
     halves, out = _halves(data, surface), []
     if not all(half.runs for half in halves):
         return []
