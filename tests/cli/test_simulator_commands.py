@@ -13,9 +13,12 @@ from lagnet.models.corrected.folder import save_corrected
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.corrected.motion_terms import MotionTerm, Rest
+from lagnet.models.corrected.servo_driven import FoundCause, ServoDrivenModel
+from lagnet.models.corrected.servo_files import save_servo_driven
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm
+from lagnet.servos.parameters import law_vector
 from lagnet.simulators.corrected_arm.arm_physics import arm_physics
 from lagnet.simulators.corrected_arm.driven_arm import DrivenArm
 from lagnet.simulators.round_trips.reference_cases import case_values
@@ -124,3 +127,68 @@ def test_what_cannot_be_is_one_line(
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 1
     assert said in lines[0]
+
+
+@pytest.fixture(scope="module")
+def servos(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A servo-driven arm that a diagnosis corrected, and a recording of its commands and motion."""
+    out = tmp_path_factory.mktemp("servos")
+    before = ServoDrivenModel(ARM, np.tile(law_vector(kp=30.0, kd=3.0, rotor=0.05), (2, 1)), (True, True))
+    laws = np.tile(law_vector(kp=18.0, kd=3.0, rotor=0.05, coulomb=0.3, load_driving=0.1, delay=0.02), (2, 1))
+    cause = FoundCause("gain_error", 0, "named", {"kp": 18.0, "kd": 3.0})
+    model = ServoDrivenModel(ARM, laws, (True, True), causes=(cause,), before=before)
+    save_servo_driven(model, out / "corrected")
+    time = np.arange(0.0, 3.0, 0.01)
+    command = np.column_stack([0.6 * np.sin(2.0 * time), 0.4 * np.sin(3.0 * time)])
+    q = model.rollout(command, time, np.zeros(2), step=1e-3)
+    write_recording(Recording(time, q, None, ARM.joints, command=command), out / "run.csv")
+    return out
+
+
+@pytest.mark.parametrize(("to", "engine"), [("mjcf", "mujoco"), ("pybullet", "pybullet")])
+def test_a_correction_on_motion_is_exported_and_verified(servos: Path, tmp_path: Path, to: str, engine: str) -> None:
+    words = ["export", str(servos / "corrected"), "--to", to, "--out", str(tmp_path)]
+    assert main([*words, "--verify", str(servos / "run.csv")]) == DONE
+    text = json.loads((tmp_path / "export.json").read_text(encoding="utf-8"))
+    verified = text["verify"]
+    before, after = (np.array(verified[side]["rmse"]) for side in ("before", "after"))
+    assert verified["engine"] == engine
+    assert verified["mode"] == "commands"
+    assert np.all(after < 0.1 * before)
+    assert np.max(verified["engine_against_corrected_rmse"]) < 2e-3
+    assert [(e["effect"], e["status"]) for e in text["effects"]] == [("gain_error", "exact")]
+    assert {"coulomb", "delay", "load_driving"} <= {e["identified"] for e in text["identified"]}
+
+
+def test_a_correction_on_motion_is_replayed_before_and_after(
+    servos: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["replay", str(servos / "run.csv"), "--robot", str(servos / "corrected"), "--out", str(tmp_path)]
+    assert main(words) == DONE
+    text = json.loads((tmp_path / "replay.json").read_text(encoding="utf-8"))
+    assert text["error_ratio"] < 0.1
+    assert (tmp_path / "report.html").is_file()
+    assert "commands alone stay within 0.05 rad" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--kp", "1,1", "--kd", "1,1"], "holds the gains of its servos"),
+        (["--engine", "gazebo"], "unknown engine 'gazebo'"),
+    ],
+)
+def test_what_cannot_be_replayed_on_motion_is_told(
+    servos: Path, tmp_path: Path, more: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["replay", str(servos / "run.csv"), "--robot", str(servos / "corrected"), "--out", str(tmp_path)]
+    assert main([*words, *more]) == BAD_INPUT
+    assert said in capsys.readouterr().err
+
+
+def test_torque_alone_does_not_drive_servos(
+    folder: Path, servos: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["replay", str(folder / "run.csv"), "--robot", str(servos / "corrected"), "--out", str(tmp_path)]
+    assert main(words) == BAD_INPUT
+    assert "holds no commands" in capsys.readouterr().err

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from lagnet.errors import ModelError
-from lagnet.models.corrected.servo_driven import ServoDrivenModel, load_servo_driven, save_servo_driven
+from lagnet.models.corrected.servo_driven import ServoDrivenModel
+from lagnet.models.corrected.servo_files import load_servo_driven, save_servo_driven
 from lagnet.rigid_body.robot import load_description
 from lagnet.servos.parameters import law_vector
 

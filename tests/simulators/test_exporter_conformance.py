@@ -12,7 +12,8 @@ from lagnet.effects.catalogue import CATALOGUE
 from lagnet.errors import LagnetError, ModelError
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.simulators.corrected_arm.arm_physics import arm_physics
-from lagnet.simulators.export import export_model, write_export_json
+from lagnet.simulators.export import export_model
+from lagnet.simulators.exported import write_export_json
 from lagnet.simulators.measured import measured_errors
 from lagnet.simulators.registry import EXPORTERS, exporter_named
 from lagnet.simulators.round_trips.reference_cases import CASES, case_values

@@ -20,7 +20,8 @@ from lagnet.models.corrected.folder import save_corrected
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.robot import Robot, load_description
-from lagnet.simulators.export import export_model, write_export_json
+from lagnet.simulators.export import export_model
+from lagnet.simulators.exported import write_export_json
 from lagnet.simulators.registry import exporter_named
 from lagnet.simulators.replay import ReplaySettings, Servo, replay
 

@@ -112,7 +112,8 @@ def write(rows: list[dict]) -> None:
     table: dict[str, dict[str, dict[str, float]]] = {}
     for row in rows:
         table.setdefault(row["exporter"], {}).setdefault(row["effect"], {})[row["engine"]] = row["share"]
-    MEASURED.write_text(json.dumps({"engines": engines, "shares": table}, indent=1) + "\n", encoding="utf-8")
+    measured = json.loads(MEASURED.read_text(encoding="utf-8")) | {"engines": engines, "shares": table}
+    MEASURED.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from lagnet.errors import LagnetError
 from lagnet.percent import percent
 
 if TYPE_CHECKING:
-    from lagnet.simulators.export import Export
-    from lagnet.simulators.exporter import Place
+    from lagnet.simulators.exported import Export
+    from lagnet.simulators.exporter import Exporter, Place
+    from lagnet.simulators.servo_exporters.servo_exporter import ServoExporter
 
 
 def command(
@@ -37,7 +38,8 @@ def command(
     from lagnet.models.files.loading import load_any
     from lagnet.recordings.loading.load import load_recording
     from lagnet.simulators.before_after import verify as verified_by
-    from lagnet.simulators.export import export_model, write_export_json
+    from lagnet.simulators.export import export_model
+    from lagnet.simulators.exported import write_export_json
     from lagnet.simulators.registry import exporter_named
     from lagnet.simulators.replay import ReplaySettings
 
@@ -61,12 +63,12 @@ def command(
     joints = written.arm.robot.joints
     for effect, place in written.places:
         where = "whole arm" if effect.joint is None else joints[effect.joint]
-        say(f"{effect.effect} ({where}): {_words(exporter.name, effect.effect, place)}")
+        say(f"{effect.effect} ({where}): {_words(written.exporter, effect.effect, place)}")
     for (kind, words), where in _identified(written).items():
         said = "every joint" if len(where) == len(joints) > 1 else ", ".join(where)
         say(f"identified {kind} ({said}): {words}")
     if written.remainder is not None:
-        say(f"learned remainder: {_words(exporter.name, '', written.remainder)}")
+        say(f"learned remainder: {_words(written.exporter, '', written.remainder)}")
     if result is not None:
         for i, joint in enumerate(joints):
             after = (result["after"] or result["before"])["rmse"][i]
@@ -85,17 +87,15 @@ def _identified(written: Export) -> dict[tuple[str, str], list[str]]:
     out: dict[tuple[str, str], list[str]] = {}
     for part, place in written.identified:
         alike = "" if part.alike is None else part.alike.effect
-        key = part.kind.replace("_", " "), _words(written.exporter.name, alike, place)
+        key = part.kind.replace("_", " "), _words(written.exporter, alike, place)
         joint, where = written.arm.robot.joints[part.joint], out.setdefault(key, [])
         if joint not in where:  # a joint has several bristles
             where.append(joint)
     return out
 
 
-def _words(exporter: str, effect: str, place: Place) -> str:
+def _words(exporter: Exporter | ServoExporter, effect: str, place: Place) -> str:
     """Status, the measured error of what is approximate, and element or reason."""
-    from lagnet.simulators.measured import measured_errors
-
-    measured = measured_errors(exporter, effect) if place.status == "approximate" else {}
+    measured = exporter.measured(effect) if place.status == "approximate" else {}
     off = "".join(f", {percent(share, 3)} off in {engine}" for engine, share in measured.items())
     return f"{place.status.replace('_', ' ')}{off}: {place.element or place.note}"

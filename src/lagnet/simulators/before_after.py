@@ -15,10 +15,12 @@ import pyarrow.parquet as pq
 
 from lagnet.files import write_whole
 from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.servo_driven import ServoDrivenModel
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
 from lagnet.simulators.replay import Replay, ReplaySettings, bare_robot, replay, replay_reference
+from lagnet.simulators.servo_replay import replay_servos, replay_servos_reference
 
 JSON, TABLE = "replay.json", "replay.parquet"
 SCHEMA = "lagnet-replay/1"
@@ -81,7 +83,7 @@ def _figures(result: Replay) -> dict[str, Any]:
 
 
 def before_and_after(
-    model: Robot | CorrectedModel,
+    model: Robot | CorrectedModel | ServoDrivenModel,
     recordings: list[Recording],
     settings: ReplaySettings,
     nominal: Robot | CorrectedModel | None = None,
@@ -97,17 +99,41 @@ def before_and_after(
     Raises:
         LagnetError: what `replay` raises.
     """
+    if isinstance(model, ServoDrivenModel):
+        return _servos_before_and_after(model, recordings, settings)
     nominal = bare_robot(model) if nominal is None else nominal
     before = replay(nominal, recordings, settings)
-    units = tuple("m" if t == "prismatic" else "rad" for t in bare_robot(model).joint_types)
+    units = units_of(bare_robot(model))
     return BeforeAfter(before, None if model is nominal else replay(model, recordings, settings), units)
 
 
-def verify(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> dict[str, Any]:
+def _servos_before_and_after(
+    model: ServoDrivenModel, recordings: list[Recording], settings: ReplaySettings
+) -> BeforeAfter:
+    """Before are the robot and servos that the diagnosis began with; a model that keeps none has no after."""
+    units = units_of(model.nominal)
+    now = replay_servos(model, recordings, settings)
+    if model.before is None:
+        return BeforeAfter(now, None, units)
+    return BeforeAfter(replay_servos(model.before, recordings, settings), now, units)
+
+
+def units_of(robot: Robot) -> tuple[str, ...]:
+    """Units of positions, joint by joint."""
+    return tuple("m" if t == "prismatic" else "rad" for t in robot.joint_types)
+
+
+def verify(
+    model: Robot | CorrectedModel | ServoDrivenModel, recordings: list[Recording], settings: ReplaySettings
+) -> dict[str, Any]:
     """What `export --verify` states: engine against corrected model, and against reality before and after."""
     compared = before_and_after(model, recordings, settings)
     short = replace(settings, longest=min(settings.longest, CHECKED), starts=0)
-    engine, reference = replay(model, recordings, short), replay_reference(model, recordings, short)
+    driven = isinstance(model, ServoDrivenModel)
+    engine = replay_servos(model, recordings, short) if driven else replay(model, recordings, short)
+    reference = (
+        replay_servos_reference(model, recordings, short) if driven else replay_reference(model, recordings, short)
+    )
     gap = [a.q - b.q for a, b in zip(engine.runs, reference.runs, strict=True)]
     error = np.sqrt(np.mean(np.concatenate(gap) ** 2, axis=0))
     return compared.to_json() | {"engine_against_corrected_rmse": [float(x) for x in error]}

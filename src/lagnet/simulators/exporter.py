@@ -11,6 +11,7 @@ from typing import ClassVar, Literal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.simulators.measured import measured_errors
 
 Status = Literal["exact", "approximate", "not_representable"]
 
@@ -71,6 +72,10 @@ class Exporter(ABC):
     def place_of_values(self, name: str, values: Mapping[str, float]) -> Place:
         """Where an effect with such parameters goes; overridden where that depends on them."""
         return self.places[name]
+
+    def measured(self, effect: str) -> Mapping[str, float]:
+        """Measured error of an effect that was written, by engine, in shares of what it moves."""
+        return measured_errors(self.name, effect)
 
     @abstractmethod
     def write(self, arm: ArmPhysics, folder: Path) -> tuple[Path, ...]:

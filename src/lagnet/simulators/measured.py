@@ -20,6 +20,11 @@ def measured_errors(exporter: str, effect: str) -> Mapping[str, float]:
     return _table()["shares"].get(exporter, {}).get(effect, {})
 
 
+def measured_servo_errors(exporter: str, effect: str) -> Mapping[str, float]:
+    """The same for a cause of an arm driven by position commands."""
+    return _table()["servo_shares"].get(exporter, {}).get(effect, {})
+
+
 def engine_versions() -> Mapping[str, str]:
     """Versions of the engines that were measured."""
     return _table()["engines"]

@@ -76,7 +76,8 @@ def recorded_drives(
         )
     command = getattr(recording, "command", None)
     if command is not None and settings.servo is not None:
-        return _of_commands(recording, np.asarray(command), settings)
+        gains = np.array(settings.servo.kp), np.array(settings.servo.kd)
+        return commanded_stretches(recording, np.asarray(command), settings, gains)
     if recording.tau is None:
         raise LagnetError(
             "holds commands and no torque",
@@ -109,10 +110,21 @@ def _of_torques(recording: Recording, nominal: Robot, arm: ArmPhysics, settings:
     return out
 
 
-def _of_commands(recording: Recording, command: np.ndarray, settings: ReplaySettings) -> list[RecordedDrive]:
-    """Commands are held from sample to sample, as a servo gets them."""
-    assert settings.servo is not None
-    kp, kd = np.array(settings.servo.kp), np.array(settings.servo.kd)
+def commanded_stretches(
+    recording: Recording, command: np.ndarray, settings: ReplaySettings, gains: tuple[np.ndarray, np.ndarray]
+) -> list[RecordedDrive]:
+    """Stretches under commands, which are held from sample to sample, as a servo gets them.
+
+    Args:
+        recording: what was measured.
+        command: shape (n, dof) [rad or m].
+        settings: how it is replayed.
+        gains: kp and kd of the feedback, shape (dof,) each.
+
+    Raises:
+        LagnetError: gains for another number of joints.
+    """
+    kp, kd = gains
     if kp.shape != (recording.n_dof,) or kd.shape != (recording.n_dof,):
         raise LagnetError(f"{kp.size} and {kd.size} gains for {recording.n_dof} joints", where="--kp, --kd")
     speed = getattr(recording, "command_velocity", None)

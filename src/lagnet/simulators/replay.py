@@ -141,6 +141,12 @@ def replay(model: Robot | CorrectedModel, recordings: list[Recording], settings:
         return _replayed(arm, bare_robot(model), recordings, settings, settings.engine, _starter(engine))
 
 
+def checked_engine(settings: ReplaySettings) -> None:
+    """Raises LagnetError for an unknown engine."""
+    if settings.engine not in ENGINES:
+        raise LagnetError(f"unknown engine {settings.engine!r}", where="--engine", choices=ENGINES)
+
+
 @contextmanager
 def started(model: Robot | CorrectedModel, settings: ReplaySettings) -> Iterator[tuple[ArmPhysics, Engine]]:
     """A model's forward physics, and the engine that runs it, for as long as the context lasts.
@@ -149,8 +155,7 @@ def started(model: Robot | CorrectedModel, settings: ReplaySettings) -> Iterator
         LagnetError: an unknown engine, or a model without bodies.
         MissingExtraError: the engine is not installed.
     """
-    if settings.engine not in ENGINES:
-        raise LagnetError(f"unknown engine {settings.engine!r}", where="--engine", choices=ENGINES)
+    checked_engine(settings)
     arm, exporter = arm_physics(model), exporter_named(FORMAT[settings.engine])
     with tempfile.TemporaryDirectory() as folder:
         exporter.write(arm, Path(folder))
@@ -194,7 +199,7 @@ def _replayed(
     torques = [d for d in drives if not d.commanded]
     horizon = _horizon(torques, mover, settings) if torques and settings.starts else None
     if not torques and settings.starts:
-        horizon = _stayed([(r.q - r.q_measured, r.time[1] - r.time[0]) for r in runs], settings.tolerance)
+        horizon = stayed([(r.q - r.q_measured, r.time[1] - r.time[0]) for r in runs], settings.tolerance)
     return Replay(name, arm.robot.joints, runs, horizon, settings)
 
 
@@ -217,10 +222,10 @@ def _horizon(drives: list[RecordedDrive], mover: Mover, settings: ReplaySettings
     for start in at:
         i = int(np.searchsorted(edges, start, side="right") - 1)
         errors.append((_free(drives[i], int(start - edges[i]), most, mover, settings.tolerance), drives[i].step))
-    return _stayed(errors, settings.tolerance)
+    return stayed(errors, settings.tolerance)
 
 
-def _stayed(errors: Sequence[tuple[Trajectory, float]], tolerance: float) -> Horizon:
+def stayed(errors: Sequence[tuple[Trajectory, float]], tolerance: float) -> Horizon:
     """The horizon of rollouts by their errors, shape (steps, dof), and periods [s]."""
     seconds, left = [], []
     for error, step in errors:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from lagnet.simulators.corrected_arm.forward_motion import motor_inertia
 from lagnet.simulators.urdf_text import BODY_SHARE
 
 SETTINGS = "settings.json"
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 def settings_of(arm: ArmPhysics) -> dict[str, Any]:
@@ -59,10 +62,10 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def write_runtime(arm: ArmPhysics, folder: Path, *modules: str) -> tuple[Path, ...]:
-    """Writes the settings and copies of modules of `runtime/` beside a model."""
+def write_runtime(arm: ArmPhysics, folder: Path, *modules: str, more: Mapping[str, Any] = NOTHING) -> tuple[Path, ...]:
+    """Writes the settings, with `more` beside them, and copies of modules of `runtime/` beside a model."""
     settings = folder / SETTINGS
-    write_text(settings, json.dumps(settings_of(arm), indent=1, allow_nan=False) + "\n")
+    write_text(settings, json.dumps(settings_of(arm) | dict(more), indent=1, allow_nan=False) + "\n")
     out = [settings]
     for name in modules:
         path = folder / name

@@ -14,7 +14,8 @@ from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.simulators.corrected_arm.arm_physics import arm_physics
-from lagnet.simulators.export import export_model, write_export_json
+from lagnet.simulators.export import export_model
+from lagnet.simulators.exported import write_export_json
 from lagnet.simulators.registry import exporter_named
 from lagnet.simulators.replay import ReplaySettings, started
 

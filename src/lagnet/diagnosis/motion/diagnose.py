@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -21,12 +21,13 @@ from lagnet.diagnosis.motion.surface.judgement import judge_surface
 from lagnet.diagnosis.motion.verdict import MotionVerdict
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.changed_bodies import Correction
-from lagnet.models.corrected.servo_driven import ServoDrivenModel
+from lagnet.models.corrected.servo_driven import FoundCause, ServoDrivenModel
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.splits import holdout_split
 from lagnet.rigid_body.kinematic_tree import kinematic_tree
 from lagnet.rigid_body.mjcf_actuators import position_actuators
 from lagnet.rigid_body.robot import Robot
+from lagnet.servos.catalogue import servo_effect
 from lagnet.servos.nominal import NominalServo
 from lagnet.servos.parameters import INDEX, KD, KP
 from lagnet.servos.servo_file import servo_of_values
@@ -131,7 +132,18 @@ def diagnose_motion(
     verdict = compose_motion_verdict(
         robot, servo, joints, fit_on, held, (before, after, with_names), seed, payload, contact
     )
+    corrected = replace(corrected, causes=_causes(verdict, corrected), before=nominal)
     return MotionDiagnosis(verdict, corrected, nominal, joints, fit_on, held, before, after, problem, len(fit_on))
+
+
+def _causes(verdict: MotionVerdict, model: ServoDrivenModel) -> tuple[FoundCause, ...]:
+    out = []
+    for e in verdict.effects:
+        joint = None if e.joint is None else model.joints.index(e.joint)
+        told = {p.name: float(p.value) for p in e.parameters}
+        values = told if joint is None else servo_effect(e.effect).read(model.laws[joint])
+        out.append(FoundCause(e.effect, joint, e.status, values))
+    return tuple(out)
 
 
 def with_body(robot: Any, body: np.ndarray) -> Any:

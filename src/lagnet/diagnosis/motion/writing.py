@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.files import write_folder_whole, write_whole
-from lagnet.models.corrected.servo_driven import save_servo_driven
+from lagnet.models.corrected.servo_files import save_servo_driven
 
 
 def write_motion_diagnosis(diagnosis: MotionDiagnosis, folder: str | Path) -> Path:
@@ -24,8 +24,7 @@ def write_motion_diagnosis(diagnosis: MotionDiagnosis, folder: str | Path) -> Pa
     out.mkdir(parents=True, exist_ok=True)
     verdict, table = diagnosis.to_json(), io.BytesIO()
     pq.write_table(holdout_motion_table(diagnosis), table)
-    found = {"effects": [{"effect": e.effect, "joint": e.joint, "status": e.status} for e in diagnosis.effects]}
-    write_folder_whole(out / "corrected", lambda made: save_servo_driven(diagnosis.corrected, made, found))
+    write_folder_whole(out / "corrected", lambda made: save_servo_driven(diagnosis.corrected, made))
     write_whole(out / "holdout_motion.parquet", table.getvalue())
     write_whole(out / "verdict.json", verdict)
     return out

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, final
 
 import numpy as np
 
-from lagnet.errors import ModelError
-from lagnet.files import finite_json, write_whole
-from lagnet.models.corrected.folder import MOST_BYTES, write_description
 from lagnet.rigid_body.kinematic_tree import KinematicTree, kinematic_tree
-from lagnet.rollout.surface import BODY, FRICTION, HARDNESS, SURFACE
 from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.parameters import (
     COULOMB,
     INDEX,
-    LAW,
-    NAMES,
-    NO_LIMIT,
     OFFSET,
     QUADRATIC,
     ROTOR,
@@ -32,10 +22,25 @@ from lagnet.servos.parameters import (
 )
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
-FORMAT = 1
-FILE = "servo.json"
 SLOW = 0.02  # [rad/s] over which dry friction changes its side where torque is asked for sample by sample
 STEP = 0.004  # [s] of a rollout at most
+
+
+@dataclass(frozen=True)
+class FoundCause:
+    """A cause that a diagnosis found.
+
+    Args:
+        effect: name of a servo effect, or "payload" or "surface_contact".
+        joint: index of the joint, None for the whole arm.
+        status: as in the verdict: "named", "tied", …
+        values: its parameters by name, SI units; those of a joint are in its law.
+    """
+
+    effect: str
+    joint: int | None
+    status: str
+    values: Mapping[str, float]
 
 
 @final
@@ -50,6 +55,8 @@ class ServoDrivenModel:
         voltage: nominal supply [V], 0 where none was recorded.
         surface: shape (len(SURFACE),), the level surface that the arm may touch, None where there is none; torques that
             are asked for sample by sample are those of the free arm.
+        causes: what a diagnosis named of it.
+        before: the robot and the servos that it corrects; None where that is not known.
         source, sha256: what it was read from, "" if nothing.
     """
 
@@ -58,6 +65,8 @@ class ServoDrivenModel:
     scale_is_set: tuple[bool, ...]
     voltage: float = 0.0
     surface: np.ndarray | None = None
+    causes: tuple[FoundCause, ...] = ()
+    before: ServoDrivenModel | None = None
     source: str = ""
     sha256: str = ""
     kind: str = field(default="corrected", init=False)
@@ -159,66 +168,3 @@ class ServoDrivenModel:
         """Acceleration that motor torque tau gives at (q, v), shape (n, dof)."""
         drift = self.inverse_dynamics(q, v, np.zeros_like(np.asarray(q, dtype=float)))
         return np.linalg.solve(self.mass_matrix(q), (np.asarray(tau) - drift)[..., None])[..., 0]
-
-
-def save_servo_driven(model: ServoDrivenModel, folder: str | Path, found: Mapping[str, Any] | None = None) -> Path:
-    """Writes the folder: the robot's description and every servo's law by name; `found` is kept beside them.
-
-    Returns:
-        The folder.
-    """
-    out = Path(folder)
-    out.mkdir(parents=True, exist_ok=True)
-    description = write_description(model.nominal, out / "robot")
-    laws = [{n: float(x) for n, x in zip(NAMES, law, strict=True)} for law in model.laws]
-    text = {
-        "format": FORMAT,
-        "joints": list(model.joints),
-        "robot": description.name,
-        "voltage": model.voltage,
-        "scale_is_set": list(model.scale_is_set),
-        "laws": laws,
-        "units": {p.name: p.unit for p in LAW},
-        **({} if model.surface is None else {"surface": dict(zip(SURFACE, map(float, model.surface), strict=True))}),
-        **({} if found is None else {"found": found}),
-    }
-    write_whole(out / FILE, finite_json(text))
-    return out
-
-
-def load_servo_driven(folder: str | Path, load_robot: Any) -> ServoDrivenModel:
-    """Reads what `save_servo_driven` wrote; `load_robot` reads the description inside.
-
-    Raises:
-        ModelError: the folder is damaged or from a newer format.
-    """
-    where = Path(folder) / FILE
-    try:
-        if where.stat().st_size > MOST_BYTES:
-            raise ModelError("is far larger than any servo-driven model", where=str(where))
-        text = json.loads(where.read_text(encoding="utf-8"))
-        if int(text.get("format", 0)) > FORMAT:
-            raise ModelError(f"format {text['format']} is newer than {FORMAT}", where=str(where))
-        laws = np.array([[float(law.get(p.name, p.neutral)) for p in LAW] for law in text["laws"]])
-        scales, voltage = tuple(bool(x) for x in text["scale_is_set"]), float(text["voltage"])
-        robot = load_robot(Path(folder) / Path(str(text["robot"])).name)
-        surface = _surface(text.get("surface"), robot.n_dof)
-        fits = laws.shape == (robot.n_dof, len(NAMES)) and len(scales) == robot.n_dof and np.isfinite(laws).all()
-        if not fits or list(robot.joints) != list(text["joints"]) or not math.isfinite(voltage):
-            raise ValueError("its joints are not those of its robot")
-        bounds = np.array([[p.lower, p.upper] for p in LAW]).T
-        if (laws < bounds[0]).any() or (laws > np.minimum(bounds[1], NO_LIMIT)).any():
-            raise ValueError("a parameter is out of its bounds")
-    except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
-        raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
-    return ServoDrivenModel(robot, laws, scales, voltage, surface, source=str(folder))
-
-
-def _surface(given: Any, n_dof: int) -> np.ndarray | None:
-    if given is None:
-        return None
-    surface = np.array([float(given[name]) for name in SURFACE])
-    whole = surface[BODY] == int(surface[BODY]) and 0 <= surface[BODY] < n_dof
-    if not np.isfinite(surface).all() or not whole or not surface[HARDNESS] > 0.0 or surface[FRICTION] < 0.0:
-        raise ValueError("its surface is none that an arm could touch")
-    return surface

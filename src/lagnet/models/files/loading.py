@@ -35,7 +35,7 @@ def load_any(spec: str | Path, held: Mapping[str, float] = NONE_HELD, *, layers:
         if (folder / corrected_files.FILE).is_file():
             return corrected_files.load_corrected(folder, load_any, layers)
         if (folder / "servo.json").is_file():
-            from lagnet.models.corrected.servo_driven import load_servo_driven
+            from lagnet.models.corrected.servo_files import load_servo_driven
 
             return load_servo_driven(folder, load_any)
         if (folder / "ensemble.json").is_file():

@@ -73,12 +73,21 @@ class IsaacLabExporter(Exporter):
 
     def write(self, arm: ArmPhysics, folder: Path) -> tuple[Path, ...]:
         path = folder / "actuators.py"
-        friction = joint_friction(arm)
-        settings = {name: _settings(arm, j, float(friction[j])) for j, name in enumerate(arm.robot.joints)}
-        text = HEAD.format(step=PHYSICS_STEP, settings=pprint.pformat(settings, width=110, sort_dicts=False))
-        gravity = tuple(float(g) for g in arm.robot.gravity)
-        write_text(path, text.replace("\nSETTINGS", f"\nGRAVITY = {gravity}\nSETTINGS", 1))
+        write_text(path, actuators_text(arm, joint_settings(arm)))
         return (path, *UsdExporter().write(arm, folder))
+
+
+def joint_settings(arm: ArmPhysics) -> dict[str, dict[str, Any]]:
+    """Kind and values of the actuator of every joint, by the joint's name."""
+    friction = joint_friction(arm)
+    return {name: _settings(arm, j, float(friction[j])) for j, name in enumerate(arm.robot.joints)}
+
+
+def actuators_text(arm: ArmPhysics, settings: Mapping[str, Any]) -> str:
+    """The module with the settings of the actuators."""
+    text = HEAD.format(step=PHYSICS_STEP, settings=pprint.pformat(dict(settings), width=110, sort_dicts=False))
+    gravity = tuple(float(g) for g in arm.robot.gravity)
+    return text.replace("\nSETTINGS", f"\nGRAVITY = {gravity}\nSETTINGS", 1)
 
 
 def _settings(arm: ArmPhysics, j: int, friction: float) -> dict[str, Any]:

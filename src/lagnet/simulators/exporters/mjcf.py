@@ -200,7 +200,7 @@ def _actuators(root: Element, arm: ArmPhysics, tree: tuple[TreeBody, ...]) -> No
         if np.isfinite(drive.upper):
             actuator.set("ctrlrange", numbers(np.array([drive.lower, drive.upper])))
         if drive.hold:
-            actuator.attrib.update(_delayed(drive.hold))
+            actuator.attrib.update(delayed(drive.hold))
     for k, ripple in enumerate(arm.ripples):
         cogging = np.array([-ripple.amplitude, ripple.order, ripple.phase])
         passive = _passive(group, f"{tree[ripple.joint].joint}_ripple_{k}", tree[ripple.joint])
@@ -216,7 +216,8 @@ def _passive(group: Element, name: str, body: TreeBody) -> Element:
     return SubElement(group, "dcmotor", name=name, joint=body.joint, input="none", resistance="1", motorconst="0")
 
 
-def _delayed(seconds: float) -> dict[str, str]:
+def delayed(seconds: float) -> dict[str, str]:
+    """Attributes of an actuator or a sensor that is late."""
     return {"delay": number(seconds), "nsample": str(int(np.ceil(seconds / FINEST)) + LAG_ROOM)}
 
 
@@ -226,4 +227,4 @@ def _sensors(root: Element, arm: ArmPhysics, tree: tuple[TreeBody, ...]) -> None
         group = SubElement(root, "sensor")
         for body, drive in late:
             sensor = SubElement(group, "jointactuatorfrc", name=f"{body.joint}_torque", joint=body.joint)
-            sensor.attrib.update(_delayed(drive.late))
+            sensor.attrib.update(delayed(drive.late))

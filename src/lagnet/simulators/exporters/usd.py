@@ -76,8 +76,8 @@ class UsdExporter(Exporter):
         return (path,)
 
 
-def usd_of(arm: ArmPhysics) -> str:
-    """The arm as USD text."""
+def usd_of(arm: ArmPhysics, gains: Sequence[tuple[float, float]] | None = None) -> str:
+    """The arm as USD text; gains: kp and kd of a position drive at every joint [N m/rad, N m s/rad]."""
     tree = arm.robot.body_tree()
     names = prim_names([b.name for b in tree])
     placed = _placed(arm, tree)
@@ -101,7 +101,7 @@ def usd_of(arm: ArmPhysics) -> str:
     friction = joint_friction(arm)
     for j, body in enumerate(tree):
         parent = "base" if body.parent < 0 else names[body.parent]
-        lines += _joint(arm, j, body, (parent, names[j]), float(friction[j]))
+        lines += _joint(arm, j, body, (parent, names[j]), float(friction[j]), None if gains is None else gains[j])
     return "\n".join([*lines, "}", "}"]) + "\n"
 
 
@@ -150,7 +150,14 @@ def _body(name: str, body: TreeBody, place: tuple[np.ndarray, np.ndarray]) -> li
     ]
 
 
-def _joint(arm: ArmPhysics, j: int, body: TreeBody, names: tuple[str, str], friction: float) -> list[str]:
+def _joint(
+    arm: ArmPhysics,
+    j: int,
+    body: TreeBody,
+    names: tuple[str, str],
+    friction: float,
+    gains: tuple[float, float] | None,
+) -> list[str]:
     kind, axis = ("Revolute", "angular") if body.turns else ("Prismatic", "linear")
     unit = PER_DEGREE if body.turns else 1.0
     position, rotation = shifted_frame(body, float(arm.shift[j]))
@@ -160,7 +167,7 @@ def _joint(arm: ArmPhysics, j: int, body: TreeBody, names: tuple[str, str], fric
         f"float physics:lowerLimit = {body.lower / unit!r}",
         f"float physics:upperLimit = {body.upper / unit!r}",
     ]
-    drive, schemas = _drive(arm, j, axis, unit)
+    drive, schemas = _drive(arm, j, axis, unit, gains)
     applied = f'"PhysxJointAxisAPI:{axis}", "NewtonJointAPI"{schemas}'
     return [
         f'def Physics{kind}Joint "joint_{own}" (prepend apiSchemas = [{applied}])\n{{',
@@ -190,10 +197,15 @@ def _friction(arm: ArmPhysics, j: int, axis: str, unit: float, friction: float) 
     return [f"float {key} = {float(value)!r}" for key, value in values.items()]
 
 
-def _drive(arm: ArmPhysics, j: int, axis: str, unit: float) -> tuple[list[str], str]:
-    """Spring and limit of force, and the schema that holds them."""
+def _drive(arm: ArmPhysics, j: int, axis: str, unit: float, gains: tuple[float, float] | None) -> tuple[list[str], str]:
+    """Servo or spring, and limit of force, and the schema that holds them."""
     lines, limit = [], arm.drives[j].most
-    if arm.stiffness[j]:
+    if gains is not None:
+        lines += [
+            f"float drive:{axis}:physics:stiffness = {float(gains[0] * unit)!r}",
+            f"float drive:{axis}:physics:damping = {float(gains[1] * unit)!r}",
+        ]
+    elif arm.stiffness[j]:
         lines += [
             f"float drive:{axis}:physics:stiffness = {float(arm.stiffness[j] * unit)!r}",
             f"float drive:{axis}:physics:targetPosition = {float(arm.spring_rest[j] / unit)!r}",

@@ -12,6 +12,7 @@ from pydrake.all import (
     AddMultibodyPlantSceneGraph,
     DiagramBuilder,
     Parser,
+    PdControllerGains,
     PrismaticJoint,
     PrismaticSpring,
     RevoluteSpring,
@@ -43,6 +44,10 @@ def build(folder, step=0.001):
             joint = plant.GetJointByName(name, arm)
             slides = isinstance(joint, PrismaticJoint)
             plant.AddForceElement((PrismaticSpring if slides else RevoluteSpring)(joint, rest, stiffness))
+    if "servo" in settings:  # position commands go into plant.get_desired_state_input_port(arm)
+        law = settings["servo"]["law"]
+        for name, kp, kd in zip(settings["joints"], law["kp"], law["kd"], strict=True):
+            plant.GetJointActuatorByName(name, arm).set_controller_gains(PdControllerGains(p=kp, d=kd))
     plant.Finalize()
     return builder, plant
 

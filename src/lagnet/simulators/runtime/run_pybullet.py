@@ -118,8 +118,7 @@ class CorrectedArm:
         push = np.zeros(len(self.ids))
         push[self.motors] = self._driven(torque) - self._smooth(x[self.motors], w[self.motors])
         for joint, link in self.yielding:
-            if self.settings["elasticity"][joint] is not None:
-                push[link] -= self.settings["elasticity"][joint] * x[link]
+            push[link] -= self._across(joint, x[link], w[link])
         bound = np.zeros(len(self.ids))
         bound[self.motors] = self._dry(w[self.motors], self._load(x, w))
         if self.solves:
@@ -134,6 +133,11 @@ class CorrectedArm:
         for k, (joint, stiffness, friction) in enumerate(self.settings["bristles"]):
             way, most = moved[self.motors[joint]], friction / stiffness
             self.bend[k] = np.sign(way) * most + (self.bend[k] - np.sign(way) * most) * np.exp(-abs(way) / most)
+
+    def _across(self, joint, twist, _speed):
+        """Torque that a transmission holds against a twist."""
+        elasticity = self.settings["elasticity"][joint]
+        return 0.0 if elasticity is None else elasticity * twist
 
     def _driven(self, torque):
         """Torque at the joints behind scale, zero, limit and clock of the log."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis, diagnose_motion
-from lagnet.models.corrected.servo_driven import load_servo_driven, save_servo_driven
+from lagnet.models.corrected.servo_files import load_servo_driven, save_servo_driven
 from lagnet.recordings.recording import Recording
 from lagnet.reports.motion_report import write_motion_report
 from lagnet.rigid_body.robot import load_description

@@ -1,0 +1,1 @@
+"""Servo-driven arms written for simulators: position commands in, motion out."""
