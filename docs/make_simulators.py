@@ -13,6 +13,8 @@ from lagnet.simulators.exporter import Exporter, Place
 from lagnet.simulators.measured import engine_versions, measured_errors
 from lagnet.simulators.registry import EXPORTERS
 from lagnet.simulators.round_trips.reference_cases import CASES, case_values
+from lagnet.simulators.servo_exporters.registry import SERVO_EXPORTERS
+from lagnet.simulators.servo_exporters.servo_exporter import CAUSES, ServoExporter
 from marked_regions import DOCS, replaced, write_or_check
 
 COMMAND = "python docs/make_simulators.py"
@@ -73,11 +75,26 @@ def places() -> str:
     return "\n\n".join(parts)
 
 
+def servo_table() -> str:
+    """One row a cause that motion can show, one column a simulator."""
+    heads = " | ".join(e.torques.title for e in SERVO_EXPORTERS.values())
+    rows = [f"| cause | {heads} |", "|---" * (1 + len(SERVO_EXPORTERS)) + "|"]
+    rows += [f"| `{name}` | " + " | ".join(servo_cell(e, name) for e in SERVO_EXPORTERS.values()) + " |" for name in CAUSES]
+    return "\n".join(rows)
+
+
+def servo_cell(exporter: ServoExporter, cause: str) -> str:
+    """Status and measured error."""
+    word, measured = WORDS[exporter.places[cause].status], exporter.measured(cause)
+    return f"{word} ({percent(max(measured.values()))})" if measured else word
+
+
 def pages() -> dict[Path, str]:
     """The page with its regions written anew."""
     page = DOCS / "simulators.md"
     assert set(CASES) == {name for name, law in CATALOGUE.items() if not law.is_transient}
     text = replaced(page.read_text(encoding="utf-8"), "table", table(), "docs/simulators.md")
+    text = replaced(text, "servo table", servo_table(), "docs/simulators.md")
     return {page: replaced(text, "places", places(), "docs/simulators.md")}
 
 

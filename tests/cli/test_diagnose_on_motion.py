@@ -83,9 +83,26 @@ def test_motion_is_refused_without_commands(diagnosed, capsys):
     assert not (diagnosed / "none").exists()
 
 
-def test_a_replay_in_a_simulator_is_refused_before_the_diagnosis(diagnosed, tmp_path, capsys):
-    words = ["diagnose", str(diagnosed / "run_1.csv"), "--robot", str(diagnosed / "robot.xml"), "--replay", "mujoco"]
-    assert main([*words, "--out", str(tmp_path / "out")]) == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
-    assert "on motion" in line
-    assert not (tmp_path / "out").exists()
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+def test_the_users_simulator_is_shown_before_and_after(diagnosed, tmp_path, engine):
+    words = ["diagnose", str(diagnosed / "run_1.csv"), "--holdout", str(diagnosed / "run_3.csv")]
+    words += ["--robot", str(diagnosed / "robot.xml"), "--replay", engine, "--out", str(tmp_path)]
+    assert main(words) == 0
+    text = json.loads((tmp_path / "replay.json").read_text(encoding="utf-8"))
+    assert (text["engine"], text["mode"]) == (engine, "commands")
+    assert text["error_ratio"] < 0.2
+    assert "<h2>Your simulator, before and after</h2>" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (["--kp", "8", "--kd", "1"], "finds the gains of servos"),
+        (["--gains", "2,1"], "a replay runs every recording with the gains"),
+    ],
+)
+def test_gains_beside_a_replay_are_told(diagnosed, tmp_path, more, said, capsys):
+    words = ["diagnose", str(diagnosed / "run_1.csv"), "--holdout", str(diagnosed / "run_3.csv")]
+    words += ["--robot", str(diagnosed / "robot.xml"), "--replay", "mujoco", "--out", str(tmp_path / "out")]
+    assert main([*words, *more]) == 2
+    assert said in capsys.readouterr().err

@@ -103,7 +103,7 @@ def command(
     say(f"{sum(map(len, read))} recordings read, diagnosing")
     if on_motion:
         factors = numbers(gains, "--gains") if gains else None
-        return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, seed)
+        return diagnose_on_motion(read[0], model, read[1] or None, out, actuator, factors, simulator, seed)
     refuse_servo_options(actuator, gains, "add --route motion, or leave it out")
     result = diagnose(read[0], model, read[1] or None, bandwidth=bandwidth, nominal_error=missed, seed=seed)
     evidence = replace(result.evidence, overlays=lay_side_by_side([*read[0], *read[1]], of_simulator))

@@ -9,6 +9,7 @@ from typing import Any
 from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
 from lagnet.diagnosis.verdict.report_data import ReportData
 from lagnet.reports.contents.findings import Findings
+from lagnet.reports.contents.replay_data import ReplayData
 from lagnet.reports.page import Section, write_page
 from lagnet.reports.sections import (
     abstentions,
@@ -18,6 +19,7 @@ from lagnet.reports.sections import (
     motion_rest,
     parameters,
     where,
+    your_simulator,
 )
 from lagnet.reports.wording import compared
 
@@ -28,17 +30,17 @@ OF_MOTION: tuple[Callable[[Mapping[str, Any], MotionDiagnosis], Section | None],
     motion_curves.build,
     motion_rest.build,
 )
-OF_VERDICT = (where.build, parameters.build, abstentions.build)
+OF_VERDICT = (your_simulator.of_diagnosis, where.build, parameters.build, abstentions.build)
 
 
-def write_motion_report(diagnosis: MotionDiagnosis, path: str | Path) -> Path:
-    """Write the diagnosis as one self-contained HTML page.
+def write_motion_report(diagnosis: MotionDiagnosis, path: str | Path, replay: ReplayData | None = None) -> Path:
+    """Write the diagnosis as one self-contained HTML page; replay: of held-out recordings in the user's simulator.
 
     Returns:
         The file that was written.
     """
     verdict = diagnosis.verdict.to_dict()
-    findings = Findings(verdict, ReportData())
+    findings = Findings(verdict, ReportData(), replay)
     built = [build(verdict, diagnosis) for build in OF_MOTION] + [build(findings) for build in OF_VERDICT]
     parts = [part for part in built if part is not None]
     return write_page(path, "Commands and motion", f"{compared(verdict)}, on motion", parts)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lagnet.errors import LagnetError
 from lagnet.recordings.recording import Recording
+
+if TYPE_CHECKING:
+    from lagnet.simulators.replay import ReplaySettings
 
 ROUTES = ("torque", "motion")
 
@@ -57,9 +60,11 @@ def diagnose_on_motion(
     out: Path,
     actuator: Path | None,
     gains: Sequence[float] | None,
+    simulator: ReplaySettings | None,
     seed: int,
 ) -> None:
     """Diagnoses, writes verdict, table, corrected model and report, and says what was found."""
+    from lagnet.cli.parts.replayed import replay_held_out
     from lagnet.cli.shared.console import say
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
     from lagnet.diagnosis.motion.writing import write_motion_diagnosis
@@ -67,6 +72,9 @@ def diagnose_on_motion(
     from lagnet.reports.motion_report import write_motion_report
     from lagnet.servos.servo_file import read_servo_file
 
+    if simulator and gains and any(g != 1.0 for g in gains):
+        what = "a replay runs every recording with the gains of the corrected servos"
+        raise LagnetError(what, where="--gains, --replay", next_step="leave one of them out")
     servo = None
     if actuator is not None:
         if not hasattr(robot, "armature"):
@@ -80,6 +88,8 @@ def diagnose_on_motion(
         write_motion_report(result, folder / "report.html")
 
     write_together(out, fill, last="verdict.json")
+    if simulator:
+        write_motion_report(result, out / "report.html", replay_held_out(result, simulator, out))
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:

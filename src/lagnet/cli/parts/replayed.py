@@ -9,6 +9,7 @@ from lagnet.errors import LagnetError
 
 if TYPE_CHECKING:
     from lagnet.diagnosis.diagnose import Diagnosis
+    from lagnet.diagnosis.motion.diagnose import MotionDiagnosis
     from lagnet.reports.contents.replay_data import ReplayData
     from lagnet.simulators.replay import ReplaySettings
 
@@ -21,27 +22,27 @@ def replay_settings(
     """How held-out recordings are replayed, once the engine has taken the nominal model; None where none is given.
 
     Raises:
-        LagnetError: an unknown engine, a model without bodies, only one of the gains, gains without an engine, or a
-            diagnosis on motion, whose servos no exporter writes.
+        LagnetError: an unknown engine, a model without bodies, only one of the gains, gains without an engine, or gains
+            for a diagnosis on motion, which finds them.
         MissingExtraError: the engine is not installed.
     """
     if engine is None:
         if kp or kd:
             raise LagnetError("gains are those of a replay", where="--kp, --kd", next_step="give --replay too")
         return None
-    if on_motion:
-        what = "the servos of a diagnosis on motion are not written for simulators"
-        step = "leave it out: the report shows rollouts of the commands, nominal and corrected, by lagnet itself"
-        raise LagnetError(what, where="--replay", next_step=step)
+    if on_motion and (kp or kd):
+        what = "a diagnosis on motion finds the gains of servos"
+        raise LagnetError(what, where="--kp, --kd", next_step="give nominal ones with --actuator")
     from lagnet.cli.shared.replays import servo_of
+    from lagnet.models.corrected.servo_driven import ServoDrivenModel
     from lagnet.simulators.replay import ReplaySettings, started
 
     settings = ReplaySettings(engine=engine, servo=servo_of(kp, kd))
-    with started(model, settings):
+    with started(model.nominal if isinstance(model, ServoDrivenModel) else model, settings):
         return settings
 
 
-def replay_held_out(result: Diagnosis, settings: ReplaySettings, out: Path) -> ReplayData:
+def replay_held_out(result: Diagnosis | MotionDiagnosis, settings: ReplaySettings, out: Path) -> ReplayData:
     """Replays, writes `replay.json` and `replay.parquet`, and says errors and horizons.
 
     Raises:

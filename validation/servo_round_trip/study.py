@@ -1,8 +1,8 @@
 """Every cause that motion can show through every engine and back, on an arm driven by position commands.
 
-python -m validation.round_trip.servos [--quick] [--only CAUSE ...]
+python -m validation.servo_round_trip.study [--quick] [--only CAUSE ...]
 
-With --only the other rows of servos.json stay as they are.
+With --only the other rows of result.json stay as they are.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from lagnet.simulators.round_trips.servo_round_trip import rolled_out, servo_eng
 from lagnet.simulators.servo_exporters.registry import SERVO_EXPORTERS
 from validation.round_trip.study import LINE, MEASURED
 
-FILE = Path(__file__).resolve().parent / "servos.json"
+FILE = Path(__file__).resolve().parent / "result.json"
 QUICK = ("gain_error", "command_delay", "directional_load_friction", "dead_band")
 NAMES = (*SERVO_CASES, "surface_contact")
 PATHS = (("mjcf", "mujoco"), ("pybullet", "pybullet"))
