@@ -79,7 +79,9 @@ def servo_table() -> str:
     """One row a cause that motion can show, one column a simulator."""
     heads = " | ".join(e.torques.title for e in SERVO_EXPORTERS.values())
     rows = [f"| cause | {heads} |", "|---" * (1 + len(SERVO_EXPORTERS)) + "|"]
-    rows += [f"| `{name}` | " + " | ".join(servo_cell(e, name) for e in SERVO_EXPORTERS.values()) + " |" for name in CAUSES]
+    rows += [
+        f"| `{name}` | " + " | ".join(servo_cell(e, name) for e in SERVO_EXPORTERS.values()) + " |" for name in CAUSES
+    ]
     return "\n".join(rows)
 
 
