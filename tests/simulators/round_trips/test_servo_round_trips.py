@@ -1,4 +1,4 @@
-"""Exported servo-driven arms in their engines against the model's rollouts; all causes in validation/servo_round_trip."""
+"""Exported servo-driven arms in their engines against their models; all causes in validation/servo_round_trip."""
 
 from __future__ import annotations
 
