@@ -14,7 +14,7 @@ from lagnet.diagnosis.motion.joint.fitting import DAMPING, HUBER, PRIOR, huber, 
 
 DIFFERENCE = 5e-3  # step of a finite difference, in sizes of the values
 CONVERGED = 1e-3  # relative gain of the cost
-ROUNDS = 2  # fits, each with the robust scale of the one before
+ROUNDS = 2
 
 Errors = Callable[[np.ndarray], list[np.ndarray]]  # values → predicted less measured positions of each joint [rad]
 Sensitivities = Callable[[np.ndarray, list[np.ndarray]], list[np.ndarray]]  # values, errors → ∂q̂/∂x of each joint
@@ -62,6 +62,7 @@ def fit_values(
     *,
     nearest: Callable[[np.ndarray], np.ndarray] = np.asarray,
     iterations: int = 20,
+    rounds: int = ROUNDS,
 ) -> np.ndarray:
     """The values of least cost from a start, shape (k,).
 
@@ -71,10 +72,11 @@ def fit_values(
         start, sizes: shape (k,).
         floors: shape (joints,), resolution of the errors [rad].
         nearest: the nearest possible values.
-        iterations: at most, in each of `ROUNDS`.
+        iterations: at most, in each round.
+        rounds: fits, each with the robust scale of the one before.
     """
     values = nearest(start)
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         scales = robust_scales(errors(values), floors)
         values = _fitted(errors, sensitivities, values, sizes, scales, nearest, iterations)
     return values

@@ -18,6 +18,7 @@ from lagnet.diagnosis.motion.arm.profiles import profiled_ends
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
 from lagnet.diagnosis.motion.arm.secants import settled_secants
 from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.constancy import CHANGES_WITHIN, trends_of
 from lagnet.diagnosis.motion.joint.fitting import Coordinates, free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
@@ -115,6 +116,9 @@ def fit_named_laws(
     out = _needed_beside_yielding(problem, fitted, laws, out)
     if left := _unexplained(problem, fitted, laws, out):
         out = _refitted(problem, fitted, laws, {j: _without(d, left.get(j, ())) for j, d in out.items()})
+    if passing := {j: left for j, d in out.items() if (left := _passing(problem, fitted, j, d))}:
+        out = {j: replace(_without(d, passing[j]), law=d.law) if j in passing else d for j, d in out.items()}
+        out = _refitted(problem, fitted, laws, out)
     out = _with_intervals(problem, fitted, laws, out)
     if not (open_ := {j: left for j, d in out.items() if (left := _undetermined(d))}):
         return out
@@ -258,6 +262,15 @@ def _undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
         return ()
     sizes = {e: _half_widths_away(found, e) for e in found.named.effects}
     return tuple(Rejected(e, WITHIN_INTERVAL, size, 1.0) for e, size in sizes.items() if size <= 1.0)
+
+
+def _passing(problem: MotionProblem, fitted: int, joint: int, found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo that grow or fade through every recording by more than a share of what they change."""
+    if found.case.base or not found.named.effects:
+        return ()
+    limit = found.case.limits.trend
+    trends = trends_of(problem, fitted, joint, found.case, found.named_law, found.named.effects)
+    return tuple(Rejected(e, CHANGES_WITHIN, t.least, limit) for e, t in trends.items() if t.least > limit)
 
 
 def _half_widths_away(found: JointDiagnosis, effect: str) -> float:

@@ -23,6 +23,8 @@ class SelectionLimits:
         change: least relative change of a parameter from its nominal value.
         remainder: greatest error that names may leave, over that without them, where it is also
         unexplained: so many times `JointCase.floor`.
+        trend: greatest change of a parameter from the middle of recordings to their ends, in shares of what its effect
+            changes, that is surely exceeded.
     """
 
     errors: float = 3.0
@@ -32,6 +34,7 @@ class SelectionLimits:
     change: float = 0.05
     remainder: float = 0.6
     unexplained: float = 4.0
+    trend: float = 0.2
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm.fitting import robust_scales, sensitivities_of
+from lagnet.diagnosis.motion.arm.fitting import cost_of, robust_scales, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
@@ -26,8 +26,10 @@ from lagnet.diagnosis.motion.surface.fit import (
     possible_surface,
     sizes_of_surface,
     surface_errors,
+    surface_of,
 )
 from lagnet.diagnosis.motion.surface.found import SurfaceFound
+from lagnet.diagnosis.motion.surface.profile import Profile, profile_of
 from lagnet.diagnosis.motion.surface.starts import lowest_runs, reach_of, starts_of_surface
 from lagnet.rollout.surface import BODY, heights_of
 from lagnet.servos.parameters import GAP, STIFFNESS
@@ -79,7 +81,13 @@ def judge_surface(
     if not judged:
         return None
     best = min(judged, key=lambda j: j.evidence.left)
-    return _found(data, corrected, body, best, floors, limits, found)
+    profile = profile_of(data, corrected, body, best.surface, floors)
+    finer = surface_of(best.surface[BODY], profile.best)
+    errors = [held.errors(corrected, body, s) for s in (best.surface, finer)]
+    scales = robust_scales(errors[0], floors)
+    if cost_of(errors[1], scales) <= cost_of(errors[0], scales):
+        best = replace(best, surface=finer)
+    return _found(data, corrected, body, best, profile, floors, limits, found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +152,7 @@ def _found(
     laws: np.ndarray,
     body: np.ndarray | None,
     judged: _Judged,
+    profile: Profile,
     floors: np.ndarray,
     limits: SelectionLimits,
     found: Mapping[int, JointDiagnosis],
@@ -152,9 +161,11 @@ def _found(
     surface, evidence = judged.surface, judged.evidence
     x = coordinates_of(surface)
     half = _half_widths(data, laws, body, judged, floors)
+    ends_of = profile.ends()
+    lower, upper = np.minimum(x - half, ends_of[0]), np.maximum(x + half, ends_of[1])
     values: dict[str, float] = dict(zip(NAMES, map(float, surface[1:]), strict=True))
     ends: dict[str, tuple[float, float]] = {
-        n: (float(a), float(b)) for n, a, b in zip(NAMES, x - half, x + half, strict=True)
+        n: (float(a), float(b)) for n, a, b in zip(NAMES, lower, upper, strict=True)
     }
     ends["mu"] = (max(0.0, ends["mu"][0]), ends["mu"][1])
     ends["k"] = (float(np.exp(ends["k"][0])), float(np.exp(min(ends["k"][1], MOST_LOG_HARDNESS))))
