@@ -222,7 +222,7 @@ def _rejected(joints: Sequence[str], found: Sequence[JointDiagnosis | None]) -> 
                 "explained_by_payload": "a payload at the last link predicts held-out motion as well, as one effect",
                 "within_interval": "beside the other joints, its intervals hold the values of the nominal servo",
                 "load_moved_the_joint": "a gear with it holds every load, and the load moved the joint",
-                "changes_within_recordings": "its value grows or fades through every recording, in shares of its change",
+                "changes_within_recordings": "its value changes through every recording, in shares of its effect",
                 "near_nominal": "its parameters are those of the nominal servo but for a few percent",
             }[r.rule]
             entry = {"effect": r.effect, "joint": joint, "rule": r.rule, "value": r.value, "limit": r.limit}
