@@ -57,7 +57,7 @@ def _identified(
 
 def _part(name: str, joint: int, values: dict[str, float], writer: ServoExporter) -> tuple[IdentifiedPart, Place]:
     alike = NamedEffect(CAUSE_OF[name], joint, values)
-    return IdentifiedPart(name, joint, values, alike), writer.places[alike.effect]
+    return IdentifiedPart(name, joint, values, alike), writer.place_of_parameter(name)
 
 
 def _parameters_of(effect: str) -> tuple[str, ...]:

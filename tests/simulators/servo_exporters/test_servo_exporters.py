@@ -74,6 +74,8 @@ def test_it_writes_files_and_tells_of_causes_and_parameters(exporter, tmp_path: 
         ("coulomb_friction", ARM.joints[1], {"Fc": 0.4})
     ]
     told = {e["identified"]: e["acts_like"] for e in text["identified"]}
+    integral = next(e["status"] for e in text["identified"] if e["identified"] == "ki")
+    assert integral == ("exact" if exporter.name in ("mjcf", "pybullet") else "not_representable")
     assert told == {"ki": "gain_error", "delay": "command_delay", "surface": "surface_contact"}
 
 

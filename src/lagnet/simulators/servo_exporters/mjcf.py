@@ -32,9 +32,10 @@ class MjcfServoExporter(ServoExporter):
     """MuJoCo's own format."""
 
     torques = MjcfExporter()
+    apart: ClassVar[Mapping[str, Place]] = {"ki": exact(f"{SCRIPT}, which sends that joint torques")}
     places: ClassVar[Mapping[str, Place]] = {
         **shared_places(torques),
-        "gain_error": exact("actuator gainprm kp, biasprm −kp δ, −kp, −kd", "an integral gain is the script's"),
+        "gain_error": exact("actuator gainprm kp, biasprm −kp δ, −kp, −kd"),
         "position_bias": exact("actuator biasprm −kp δ"),
         "command_delay": exact(
             "actuator delay, nsample", f"MuJoCo's history begins with zeros; {SCRIPT} fills it with the first command"

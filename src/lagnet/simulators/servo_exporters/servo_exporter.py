@@ -38,16 +38,22 @@ CAUSE_OF = {
 class ServoExporter(ABC):
     """One simulator or format, for arms driven by position commands.
 
-    A final class declares the exporter of the same arm under torques, a place for every cause, and how it is written.
+    A final class declares the exporter of the same arm under torques, a place for every cause, and how it is written;
+    `apart` holds places of single parameters of a law that are not those of their cause.
     """
 
     torques: ClassVar[Exporter]
     places: ClassVar[Mapping[str, Place]]
+    apart: ClassVar[Mapping[str, Place]] = {}
 
     @property
     def name(self) -> str:
         """As `--to` takes it."""
         return self.torques.name
+
+    def place_of_parameter(self, name: str) -> Place:
+        """Where a parameter of a law goes."""
+        return self.apart.get(name, self.places[CAUSE_OF[name]])
 
     @property
     def reads(self) -> str:

@@ -15,6 +15,7 @@ from lagnet.simulators.exporters.usd import UsdExporter, usd_of
 from lagnet.simulators.servo_exporters.servo_exporter import ServoExporter, shared_places
 
 PLAIN = "the drive is stiffness, damping and a limit of force"
+NO_INTEGRAL: Mapping[str, Place] = {"ki": nowhere(PLAIN)}
 DRIVEN: Mapping[str, Place] = {
     "position_bias": nowhere(f"{PLAIN}: take the bias off the commands"),
     "dead_band": nowhere(PLAIN),
@@ -30,10 +31,11 @@ class UsdServoExporter(ServoExporter):
     """Universal Scene Description with physics."""
 
     torques = UsdExporter()
+    apart = NO_INTEGRAL
     places: ClassVar[Mapping[str, Place]] = {
         **shared_places(torques),
         **DRIVEN,
-        "gain_error": exact("PhysicsDriveAPI stiffness, damping", "per degree; an integral gain has no place"),
+        "gain_error": exact("PhysicsDriveAPI stiffness, damping", "per degree"),
         "command_delay": nowhere("USD states what a joint is, not what its command passes through"),
         "duty_saturation": exact("PhysicsDriveAPI maxForce"),
     }
@@ -49,10 +51,11 @@ class IsaacLabServoExporter(ServoExporter):
     """Isaac Lab's actuator configurations."""
 
     torques = IsaacLabExporter()
+    apart = NO_INTEGRAL
     places: ClassVar[Mapping[str, Place]] = {
         **shared_places(torques),
         **DRIVEN,
-        "gain_error": exact("stiffness, damping", "an integral gain has no place"),
+        "gain_error": exact("stiffness, damping"),
         "command_delay": approximate("DelayedPDActuatorCfg min_delay, max_delay", "whole physics steps"),
         "duty_saturation": exact("effort_limit_sim"),
     }
