@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lagnet.rigid_body.kinematic_tree import KinematicTree, kinematic_tree
 from lagnet.rigid_body.robot import load_description
 from lagnet.rollout.rigid_bodies import dynamics, workspace
-from lagnet.rollout.surface import height_above, heights_of
+from lagnet.rollout.surface import height_above, heights_of, levers_of
 from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.parameters import law_vector
 
@@ -73,6 +75,18 @@ def test_slopes_are_those_of_the_heights():
         assert z == pytest.approx(heights_of(tree, surface, q[None])[0], abs=ROUNDED)
         assert np.abs(slopes[0] - different).max() < 1e-7
         assert not slopes[:, 5].any()  # behind the touching body
+
+
+@pytest.mark.parametrize("sliding", [False, True])
+def test_levers_are_the_slopes_in_every_pose(sliding: bool):
+    robot = load_description("ur5")
+    tree = kinematic_tree(robot)
+    tree = replace(tree, sliding=np.where(np.arange(robot.n_dof) == 2, sliding, tree.sliding))
+    surface = np.array([4.0, 0.1, -0.2, 0.05, -0.1, HARD, 0.0])
+    poses = np.random.default_rng(0).uniform(-2.0, 2.0, (5, robot.n_dof))
+    steps = 1e-6 * np.eye(robot.n_dof)
+    different = np.array([heights_of(tree, surface, q + steps) - heights_of(tree, surface, q - steps) for q in poses])
+    assert np.abs(levers_of(tree, surface, poses) - different / 2e-6).max() < 1e-7
 
 
 def test_far_below_the_arm_a_surface_changes_nothing():

@@ -34,6 +34,19 @@ def heights_of(tree: KinematicTree, surface: np.ndarray, q: np.ndarray) -> np.nd
     return out
 
 
+def levers_of(tree: KinematicTree, surface: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """∂z/∂q of the point in every pose, shape (n, dof) [m, or 1 of a sliding joint].
+
+    z is a sinusoid of every turning joint and linear in every sliding one, so half of its difference between a quarter
+    turn to either side (or one metre) is its slope.
+    """
+    poses, out = np.asarray(q, dtype=float), np.empty(np.shape(q))
+    for j, sliding in enumerate(tree.sliding):
+        step = np.eye(poses.shape[1])[j] * (1.0 if sliding else np.pi / 2.0)
+        out[:, j] = (heights_of(tree, surface, poses + step) - heights_of(tree, surface, poses - step)) / 2.0
+    return out
+
+
 @njit(cache=True, error_model="numpy")
 def _heights(tree, surface, q, out):  # pragma: no cover - compiled
     dof = q.shape[1]

@@ -7,8 +7,9 @@ import pytest
 
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.surface.entry import NAME, surface_abstentions, surface_effects
-from lagnet.diagnosis.motion.surface.evidence import LEAST_BLOCKS, Touched, together
+from lagnet.diagnosis.motion.surface.evidence import LEAST_BLOCKS, Touched, pushed_joints, together
 from lagnet.diagnosis.motion.surface.found import SurfaceFound
+from lagnet.rigid_body.kinematic_tree import KinematicTree
 
 LIMITS = SelectionLimits()
 GAINS = np.random.default_rng(0).uniform(0.5, 1.5, 12)
@@ -58,7 +59,7 @@ def test_it_is_an_effect_or_an_abstention_with_its_height(named):
     values = {"px": 0.0, "py": 0.0, "pz": -0.1, "h": 0.012, "k": 900.0, "mu": 0.2}
     ends = {n: (x - 0.01, x + 0.01) for n, x in values.items()}
     surface = np.array([1.0, *values.values()])
-    found = SurfaceFound(surface, "wrist", values, ends, named, 6.0, (4e-4, 1e-4), 0.5, True)
+    found = SurfaceFound(surface, "wrist", values, ends, named, 3, 6.0, (4e-4, 1e-4), 0.5, True)
     effects, abstentions = surface_effects(found), surface_abstentions(found)
     assert [e.effect for e in effects] == [NAME] * named
     assert [a.effect for a in abstentions] == [NAME] * (not named)
@@ -68,6 +69,27 @@ def test_it_is_an_effect_or_an_abstention_with_its_height(named):
     if named:
         assert effects[0].value("k") == 900.0
         assert effects[0].evidence.log10_odds_over_best_rival > 0.0
+
+
+def test_a_surface_that_pushes_one_joint_is_told_as_what_a_stop_may_be():
+    values = dict.fromkeys(("px", "py", "pz", "h", "k", "mu"), 0.1)
+    ends = dict.fromkeys(values, (0.0, 0.2))
+    found = SurfaceFound(np.ones(7), "hip", values, ends, False, 1, 6.0, (4e-4, 1e-4), 0.5, True)
+    assert "pushes one joint alone" in surface_abstentions(found)[0].reason
+
+
+@pytest.mark.parametrize(
+    ("body", "point", "pushed"),
+    [(0, (0.3, 0.0, 0.0), 0), (1, (0.3, 0.0, -0.1), 1), (2, (0.3, 0.0, 0.0), 2), (2, (0.0, 0.0, 0.0), 1)],
+    ids=["a turntable", "its first lift", "two lifts", "on the axis of the second"],
+)
+def test_joints_are_counted_that_a_vertical_force_at_the_point_turns(body: int, point: tuple[float, ...], pushed: int):
+    axes, base = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]]), np.full((3, 3), 0.2)
+    still = {"bodies": np.zeros((3, 10)), "armature": np.zeros(3), "gravity": np.array([0.0, 0.0, -9.81])}
+    turning = {"axes": axes, "sliding": np.zeros(3, dtype=bool)}
+    tree = KinematicTree(np.array([-1, 0, 1]), np.tile(np.eye(3), (3, 1, 1)), base, **turning, **still)
+    poses = np.random.default_rng(0).uniform(-1.0, 1.0, (200, 3))
+    assert pushed_joints(tree, np.array([body, *point, 0.0, 1000.0, 0.2]), poses) == pushed
 
 
 def test_without_one_nothing_is_told():

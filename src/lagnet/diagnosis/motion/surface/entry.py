@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lagnet.diagnosis.motion.joint.block_scores import log10_odds
+from lagnet.diagnosis.motion.surface.evidence import LEAST_JOINTS
 from lagnet.diagnosis.motion.surface.found import SurfaceFound
 from lagnet.diagnosis.verdict.verdict import Abstained, EffectEvidence, EffectFound, NamedParameter
 from lagnet.percent import percent
@@ -29,7 +30,11 @@ def surface_abstentions(found: SurfaceFound | None) -> list[Abstained]:
     why = (
         f"the correction rests the arm on a level surface {_place(found)}; without it errors there, on motion that was "
     )
-    why += f"not fitted, are {_larger(found)} larger, but not in enough places to be told from other causes"
+    why += f"not fitted, are {_larger(found)} larger, but "
+    if found.pushed < LEAST_JOINTS:
+        why += "it pushes one joint alone, as a stop or any torque over that joint's angle does"
+    else:
+        why += "not in enough places to be told from other causes"
     return [
         Abstained(NAME, None, why, "lower the arm slowly onto the surface in several places, and the same above it")
     ]

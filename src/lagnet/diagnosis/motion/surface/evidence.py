@@ -14,9 +14,13 @@ import numpy as np
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns
 from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.rigid_body.kinematic_tree import KinematicTree
+from lagnet.rollout.surface import heights_of, levers_of
 
 LEAST_BLOCKS = 6  # of time in contact that evidence rests on
 LEAST_JOINTS = 2  # that it moves: a stop of one joint moves one joint alike
+LOW = 0.05  # share of the poses, the lowest, in which a surface pushes
+LEAST_LEVER = 0.2  # of a joint that it pushes, of the largest
 LEAST_SHARE = 0.5  # of the squared error where it acts that a named surface takes away
 USUAL = 2.0  # usual errors at which a score has half of its slope
 
@@ -83,6 +87,19 @@ def touched(
     squares = [np.exp(2.0 * _by_joint(data, e, 1e-3 * floors).T[rows]).sum(axis=1) for e in (nominal, free, held)]
     without, with_it = ((acts * _by_joint(data, e, USUAL * scales).T)[rows].sum(axis=1) for e in (free, held))
     return Touched(without, with_it, acts[rows], np.column_stack(squares))
+
+
+def pushed_joints(tree: KinematicTree, surface: np.ndarray, poses: np.ndarray) -> int:
+    """Number of joints that a surface pushes, those with a lever in the lowest poses: a stop pushes one, and moves all.
+
+    Args:
+        tree: the rigid bodies.
+        surface: shape (len(SURFACE),).
+        poses: shape (n, dof).
+    """
+    z = heights_of(tree, surface, poses)
+    levers = np.sqrt(np.mean(levers_of(tree, surface, poses[z <= np.quantile(z, LOW)]) ** 2, axis=0))
+    return int(np.sum(levers > LEAST_LEVER * levers.max()))
 
 
 def _usual_errors(data: ArmRuns, free: list[np.ndarray], apart: list[np.ndarray], floors: np.ndarray) -> np.ndarray:

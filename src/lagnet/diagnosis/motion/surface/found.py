@@ -18,6 +18,7 @@ class SurfaceFound:
         values: px, py, pz [m] in that joint's frame, h [m] above the base's origin, k [N/m], μ.
         intervals: 95 %, by name.
         named: whether it is a claim, or a part of the correction alone.
+        pushed: number of joints that it pushes.
         errors: gain of the score over the same correction without it, where it touches motion that was not fitted, over
             the standard error of that gain over blocks of time.
         power: mean squared error over the variance of the motion, without and with it, in the same blocks.
@@ -30,6 +31,7 @@ class SurfaceFound:
     values: Mapping[str, float]
     intervals: Mapping[str, tuple[float, float]]
     named: bool
+    pushed: int
     errors: float
     power: tuple[float, float]
     share: float

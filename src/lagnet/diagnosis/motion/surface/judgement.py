@@ -18,7 +18,7 @@ from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.problem import MotionProblem
-from lagnet.diagnosis.motion.surface.evidence import Touched, together, touched
+from lagnet.diagnosis.motion.surface.evidence import LEAST_JOINTS, Touched, pushed_joints, together, touched
 from lagnet.diagnosis.motion.surface.fit import (
     MOST_LOG_HARDNESS,
     coordinates_of,
@@ -176,7 +176,9 @@ def _found(
     name = data.problem.joints[int(surface[BODY])]
     scale = all(d.case.scale_is_set for d in found.values())
     sides = (float(power[0]), float(power[1]))
-    return SurfaceFound(surface, name, values, ends, evidence.is_named(limits), evidence.gain[1], sides, share, scale)
+    pushed = pushed_joints(data.problem.tree, surface, np.column_stack([s.q for s in data.problem.series]))
+    named = evidence.is_named(limits) and pushed >= LEAST_JOINTS
+    return SurfaceFound(surface, name, values, ends, named, pushed, evidence.gain[1], sides, share, scale)
 
 
 def _half_widths(
