@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from tests.tolerances import IDENTITY, RECOVERY
 
+from lagnet.diagnosis.motion.arm.arm_laws import ArmLaws
 from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths
-from lagnet.diagnosis.motion.arm.named_laws import ArmLaws, _undetermined
 from lagnet.diagnosis.motion.arm.rollouts import PIECE, SAMPLES, STEP, ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.joint.fitting import Coordinates
-from lagnet.diagnosis.motion.joint.selection import WITHIN_INTERVAL
 from lagnet.diagnosis.motion.problem import MotionProblem, pose_motion_problem
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.kinematic_tree import kinematic_tree
@@ -61,20 +58,6 @@ def test_values_come_back_from_rollouts_of_the_whole_arm(tmp_path):
     arm = arm_of(posed(tmp_path, 0.0))
     values = fit_values(arm.errors, arm.sensitivities, arm.read(), arm.sizes, np.full(2, 1e-5), nearest=arm.nearest)
     assert values == pytest.approx([8.0, 0.03, GAIN, FRICTION], rel=100.0 * RECOVERY)
-
-
-def test_an_effect_whose_interval_holds_the_nominal_value_is_not_known():
-    law = NOMINAL.copy()
-    law[[KP, COULOMB]] = GAIN, FRICTION
-    intervals = {"kp": (4.9, 5.1), "kd": (0.2, 0.4), "coulomb": (0.02, 0.22)}
-    case = SimpleNamespace(law=NOMINAL, base=())
-    named = SimpleNamespace(effects=("gain_error", "coulomb_friction"))
-    found = SimpleNamespace(case=case, named=named, named_law=law, intervals=intervals)
-    (open_,) = _undetermined(found)
-    assert (open_.effect, open_.rule) == ("coulomb_friction", WITHIN_INTERVAL)
-    assert open_.value == pytest.approx(0.9)
-    case.base = (("kp",),)
-    assert _undetermined(found) == ()
 
 
 @pytest.mark.slow

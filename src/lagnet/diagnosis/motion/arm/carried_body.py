@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.arm_laws import ArmLaws
 from lagnet.diagnosis.motion.arm.fitting import DIFFERENCE
-from lagnet.diagnosis.motion.arm.named_laws import ArmLaws
 
 SIZE = 0.2  # of a share, for steps and differences
 

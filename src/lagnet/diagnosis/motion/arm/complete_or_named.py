@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm.named_laws import with_named_laws
+from lagnet.diagnosis.motion.arm.arm_laws import with_named_laws
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.problem import MotionProblem

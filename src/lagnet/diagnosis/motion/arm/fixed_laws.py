@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.arm_laws import ArmLaws
 from lagnet.diagnosis.motion.arm.carried_body import LoadedArm
 from lagnet.diagnosis.motion.arm.fitting import fit_values, sensitivities_of
 from lagnet.diagnosis.motion.arm.intervals import half_widths, widening
-from lagnet.diagnosis.motion.arm.named_laws import ITERATIONS, ArmLaws
+from lagnet.diagnosis.motion.arm.named_laws import ITERATIONS
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.joint.fitting import free_coordinates
 from lagnet.diagnosis.motion.problem import MotionProblem

@@ -14,10 +14,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.diagnosis.motion.arm.arm_laws import ArmLaws, with_named_laws
 from lagnet.diagnosis.motion.arm.intervals import half_widths
-from lagnet.diagnosis.motion.arm.named_laws import ArmLaws, away_from_nominal, with_named_laws
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_to_fit
 from lagnet.diagnosis.motion.arm.secants import settled_secants
+from lagnet.diagnosis.motion.arm.withdrawals import away_from_nominal
 from lagnet.diagnosis.motion.joint.fitting import free_coordinates
 from lagnet.diagnosis.motion.joint.joint_case import sizes_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis

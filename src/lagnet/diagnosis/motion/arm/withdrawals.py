@@ -1,0 +1,104 @@
+"""Rules that withdraw a name once the whole arm is rolled out; what a name explains stays in the correction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lagnet.diagnosis.motion.arm.arm_laws import floors_of, with_named_laws
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
+from lagnet.diagnosis.motion.joint.constancy import CHANGES_WITHIN, trends_of
+from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
+from lagnet.diagnosis.motion.joint.refitting import groups_of
+from lagnet.diagnosis.motion.joint.selection import (
+    NEAR_NOMINAL,
+    REMAINDER,
+    WITHIN_INTERVAL,
+    Rejected,
+    refuted_by_load,
+    relative_change,
+)
+from lagnet.diagnosis.motion.problem import MotionProblem
+from lagnet.servos.parameters import INDEX
+
+
+def unexplained(
+    problem: MotionProblem, fitted: int, laws: np.ndarray, found: Mapping[int, JointDiagnosis]
+) -> dict[int, tuple[Rejected, ...]]:
+    """Names of joints at which all names together leave most of the error of given servos: then the cause is another.
+
+    The errors are those of held-out recordings, rolled out whole with all joints coupled. What is left must be most of
+    the error over all of them, and in the middle one of the blocks of time that the given servos miss: a joint that
+    sticks once where its rollout slips, by a hair, says nothing of the rest.
+    """
+    held, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy()
+    for joint, d in found.items():
+        nominal[joint] = d.case.law
+    named = with_named_laws(laws, found)
+    errors = [held.errors(x) for x in (nominal, named)]
+    blocks = [np.exp(held.scores(own, floors_of(found))).reshape(len(found), -1) for own in errors]
+    out = {}
+    for i, (joint, d) in enumerate(found.items()):
+        was, is_ = (float(np.sqrt(np.mean(own[i] ** 2))) for own in errors)
+        limits = d.case.limits
+        limit = max(limits.remainder * was, limits.unexplained * d.case.floor)
+        usual = _usual_share(blocks[0][i], blocks[1][i], limits.unexplained * d.case.floor)
+        if not d.case.base and d.named.effects and is_ > limit and usual > limits.remainder:
+            out[joint] = tuple(Rejected(e, REMAINDER, is_, limit) for e in d.named.effects)
+    return out
+
+
+def _usual_share(before: np.ndarray, after: np.ndarray, least: float) -> float:
+    """Median share of the error that is left in blocks with more than the least of it; 1 where none has."""
+    shown = before > least
+    return float(np.median((after / before)[shown])) if shown.any() else 1.0
+
+
+def near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo whose values are the nominal ones but for a few percent."""
+    if found.case.base:
+        return ()
+    limit = found.case.limits.change
+    changes = {e: relative_change(found.case.law, found.named_law, e) for e in found.named.effects}
+    return tuple(Rejected(e, NEAR_NOMINAL, change, limit) for e, change in changes.items() if change < limit)
+
+
+def refuted(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects with which the load could never have moved the joint, although it did."""
+    tests = (refuted_by_load(found.case, found.named_law, e) for e in found.named.effects)
+    return tuple(rejected for rejected in tests if rejected is not None)
+
+
+def undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo none of whose 95 % intervals leaves out the nominal value: their size is not known.
+
+    A joint by itself may prefer such an effect; beside the other joints its size is open, or stands at a bound.
+    """
+    if found.case.base:
+        return ()
+    sizes = {e: _half_widths_away(found, e) for e in found.named.effects}
+    return tuple(Rejected(e, WITHIN_INTERVAL, size, 1.0) for e, size in sizes.items() if size <= 1.0)
+
+
+def passing(problem: MotionProblem, fitted: int, joint: int, found: JointDiagnosis) -> tuple[Rejected, ...]:
+    """Effects of a given servo that grow or fade through every recording by more than a share of what they change."""
+    if found.case.base or not found.named.effects:
+        return ()
+    limit = found.case.limits.trend
+    trends = trends_of(problem, fitted, joint, found.case, found.named_law, found.named.effects)
+    return tuple(Rejected(e, CHANGES_WITHIN, t.least, limit) for e, t in trends.items() if t.least > limit)
+
+
+def _half_widths_away(found: JointDiagnosis, effect: str) -> float:
+    """max |p − p₀| over the width of p's interval towards p₀, of all parameters of an effect; infinite without one."""
+    away = [away_from_nominal(found, g[0]) for g in groups_of(found.case, (effect,))]
+    return max(away, default=np.inf)
+
+
+def away_from_nominal(found: JointDiagnosis, name: str) -> float:
+    """|p − p₀| of a law parameter over the width of its interval towards p₀, infinite where it has none."""
+    value, nominal = float(found.named_law[INDEX[name]]), float(found.case.law[INDEX[name]])
+    low, high = found.intervals.get(name, (np.nan, np.nan))
+    size = abs(value - nominal) / max(value - low if nominal < value else high - value, 1e-12)
+    return size if np.isfinite(size) else np.inf
