@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.motion.joint.cases import joint_case
-from lagnet.diagnosis.motion.joint.constancy import trends_of
+from lagnet.diagnosis.motion.joint.constancy import Trend, trends_of
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.problem import pose_motion_problem
 from lagnet.recordings.recording import Recording
@@ -42,4 +42,9 @@ def test_a_trend_is_as_large_as_the_change_where_a_gain_fades_from_nominal(nomin
     assert trend.parameter == "kp"
     assert trend.share == pytest.approx(share, abs=0.15)
     assert trend.least <= trend.share
-    assert (trend.least > SelectionLimits().trend) == (first != last)
+    assert trend.is_more_than(SelectionLimits().trend) == (first != last)
+
+
+@pytest.mark.parametrize(("share", "least", "more"), [(0.5, 0.06, True), (0.5, -0.06, False), (0.1, 0.06, False)])
+def test_a_trend_counts_where_it_is_large_and_beyond_scatter(share: float, least: float, more: bool):
+    assert Trend("kp", share, least).is_more_than(SelectionLimits().trend) == more

@@ -23,7 +23,9 @@ from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import without
 from lagnet.diagnosis.motion.joint.selection import (
     NO_GAIN,
+    NOT_SIGNIFICANT,
     Rejected,
+    gains_too_little,
 )
 from lagnet.diagnosis.motion.problem import MotionProblem
 from lagnet.servos.catalogue import servo_effect
@@ -47,11 +49,11 @@ def fit_named_laws(
         out = {j: _without(d, nominal.get(j, ())) for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
     out = _needed_beside_yielding(problem, fitted, laws, out)
-    if left := unexplained(problem, fitted, laws, out):
-        out = _refitted(problem, fitted, laws, {j: _without(d, left.get(j, ())) for j, d in out.items()})
     if fading := {j: left for j, d in out.items() if (left := passing(problem, fitted, j, d))}:
         out = {j: replace(_without(d, fading[j]), law=d.law) if j in fading else d for j, d in out.items()}
         out = _refitted(problem, fitted, laws, out)
+    if left := unexplained(problem, fitted, laws, out):  # also those that stood in for what fades
+        out = _refitted(problem, fitted, laws, {j: _without(d, left.get(j, ())) for j, d in out.items()})
     out = _with_intervals(problem, fitted, laws, out)
     if not (open_ := {j: left for j, d in out.items() if (left := undetermined(d))}):
         return out
@@ -105,25 +107,33 @@ def _needed_beside_yielding(
     """The diagnoses less names that the whole arm predicts as well without, where a transmission yields.
 
     Joint by joint its neighbours are loaded by the motion that was measured; where that is the motor's and not the
-    link's they lack what the link does, and take it for a cause of their own.
+    link's they lack what the link does, and take it for a cause of their own. The bar is that of a joint by itself, a
+    gain beyond its scatter; of the names that fail, that of the least gain goes first.
     """
     out = dict(found)
-    names = sorted((c.gain, j, c.effect) for j, d in out.items() for c in d.comparisons)
-    if len(names) < 2 or not any(servo_effect(effect).chosen for _, _, effect in names):
-        return out
     held, floors = ArmRuns(problem, runs_held_out(problem, fitted), tuple(out)), floors_of(out)
 
     def scores(diagnoses: Mapping[int, JointDiagnosis]) -> np.ndarray:
         arm = named_arm(problem, fitted, laws, diagnoses)
         return held.scores(held.errors(laws if arm is None else arm.laws), floors)
 
-    for _, joint, effect in names[:-1]:
-        rejected = Rejected(effect, NO_GAIN, 0.0, out[joint].case.limits.gain)
-        fewer = _refitted(problem, fitted, laws, out | {joint: _without(out[joint], (rejected,))})
-        gain = advantage(scores(fewer), scores(out))[0]
-        if gain < out[joint].case.limits.gain:
-            kept = replace(fewer[joint], rejected=(*out[joint].rejected, replace(rejected, value=gain)))
-            out = fewer | {joint: kept}
+    def less(joint: int, effect: str) -> tuple[float, Rejected | None, dict[int, JointDiagnosis]]:
+        had, limits = out[joint], out[joint].case.limits
+        tried = Rejected(effect, NO_GAIN, 0.0, limits.gain)
+        fewer = _refitted(problem, fitted, laws, out | {joint: _without(had, (tried,))})
+        gain = advantage(scores(fewer), scores(out))
+        if (rejected := gains_too_little(effect, gain, limits)) is None:
+            return gain[0], None, out
+        law = had.law if rejected.rule == NOT_SIGNIFICANT else fewer[joint].law  # what gains stays in the correction
+        return gain[0], rejected, fewer | {joint: replace(fewer[joint], law=law, rejected=(*had.rejected, rejected))}
+
+    while len(names := [(j, c.effect) for j, d in out.items() for c in d.comparisons]) > 1:
+        if not any(servo_effect(effect).chosen for _, effect in names):
+            break
+        failed = [test for test in (less(*name) for name in names) if test[1] is not None]
+        if not failed:
+            break
+        out = min(failed, key=lambda test: test[0])[2]
     return out
 
 

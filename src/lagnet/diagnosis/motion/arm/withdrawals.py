@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lagnet.diagnosis.motion.arm.arm_laws import floors_of, with_named_laws
-from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
+from lagnet.diagnosis.motion.arm.arm_laws import with_named_laws
+from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
 from lagnet.diagnosis.motion.joint.constancy import CHANGES_WITHIN, trends_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of
@@ -28,31 +28,22 @@ def unexplained(
 ) -> dict[int, tuple[Rejected, ...]]:
     """Names of joints at which all names together leave most of the error of given servos: then the cause is another.
 
-    The errors are those of held-out recordings, rolled out whole with all joints coupled. What is left must be most of
-    the error over all of them, and in the middle one of the blocks of time that the given servos miss: a joint that
-    sticks once where its rollout slips, by a hair, says nothing of the rest.
+    The errors are those of all recordings, fitted or not, rolled out with all joints coupled: a joint that sticks once
+    where its rollout slips, by a hair, may lose a held-out recording and says nothing of the rest.
     """
-    held, nominal = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), laws.copy()
+    runs, nominal = (*runs_to_fit(problem, fitted), *runs_held_out(problem, fitted)), laws.copy()
     for joint, d in found.items():
         nominal[joint] = d.case.law
+    whole = ArmRuns(problem, runs, tuple(found))
     named = with_named_laws(laws, found)
-    errors = [held.errors(x) for x in (nominal, named)]
-    blocks = [np.exp(held.scores(own, floors_of(found))).reshape(len(found), -1) for own in errors]
+    before, after = ([float(np.sqrt(np.mean(e**2))) for e in whole.errors(x)] for x in (nominal, named))
     out = {}
-    for i, (joint, d) in enumerate(found.items()):
-        was, is_ = (float(np.sqrt(np.mean(own[i] ** 2))) for own in errors)
+    for (joint, d), was, is_ in zip(found.items(), before, after, strict=True):
         limits = d.case.limits
         limit = max(limits.remainder * was, limits.unexplained * d.case.floor)
-        usual = _usual_share(blocks[0][i], blocks[1][i], limits.unexplained * d.case.floor)
-        if not d.case.base and d.named.effects and is_ > limit and usual > limits.remainder:
+        if not d.case.base and d.named.effects and is_ > limit:
             out[joint] = tuple(Rejected(e, REMAINDER, is_, limit) for e in d.named.effects)
     return out
-
-
-def _usual_share(before: np.ndarray, after: np.ndarray, least: float) -> float:
-    """Median share of the error that is left in blocks with more than the least of it; 1 where none has."""
-    shown = before > least
-    return float(np.median((after / before)[shown])) if shown.any() else 1.0
 
 
 def near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:
@@ -82,12 +73,16 @@ def undetermined(found: JointDiagnosis) -> tuple[Rejected, ...]:
 
 
 def passing(problem: MotionProblem, fitted: int, joint: int, found: JointDiagnosis) -> tuple[Rejected, ...]:
-    """Effects of a given servo that grow or fade through every recording by more than a share of what they change."""
+    """Effects of a given servo that grow or fade through every recording by more than a share of what they change.
+
+    That share, and that there is any change beyond scatter, are two questions: of a short recording a change by half is
+    not known to a fifth.
+    """
     if found.case.base or not found.named.effects:
         return ()
     limit = found.case.limits.trend
     trends = trends_of(problem, fitted, joint, found.case, found.named_law, found.named.effects)
-    return tuple(Rejected(e, CHANGES_WITHIN, t.least, limit) for e, t in trends.items() if t.least > limit)
+    return tuple(Rejected(e, CHANGES_WITHIN, t.share, limit) for e, t in trends.items() if t.is_more_than(limit))
 
 
 def _half_widths_away(found: JointDiagnosis, effect: str) -> float:

@@ -37,6 +37,10 @@ class Trend:
     share: float
     least: float
 
+    def is_more_than(self, share: float) -> bool:
+        """Whether it is, and not by scatter alone."""
+        return self.share > share and self.least > 0.0
+
 
 def trends_of(
     problem: MotionProblem, fitted: int, joint: int, case: JointCase, law: np.ndarray, effects: tuple[str, ...]

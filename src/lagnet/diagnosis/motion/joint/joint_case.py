@@ -24,7 +24,7 @@ class SelectionLimits:
         remainder: greatest error that names may leave, over that without them, where it is also
         unexplained: so many times `JointCase.floor`.
         trend: greatest change of a parameter from the middle of recordings to their ends, in shares of what its effect
-            changes, that is surely exceeded.
+            changes, where that is more than its scatter.
     """
 
     errors: float = 3.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.fitting import Fitted, robust_scale
-from lagnet.diagnosis.motion.joint.joint_case import JointCase
+from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, friction_when_driven
 from lagnet.servos.catalogue import SERVO_CATALOGUE, servo_effect
@@ -25,6 +25,7 @@ MOST_EFFECTS = 10
 EQUAL = 0.005  # of scores: half the penalty of a parameter, so that no count of parameters is overruled
 WITHIN_INTERVAL = "within_interval"  # rule: 95 % intervals by the whole arm hold the nominal values
 NO_GAIN = "no_holdout_gain"  # rule: held-out motion is predicted as well without
+NOT_SIGNIFICANT = "not_significant"  # rule: what it gains there is within its scatter
 REMAINDER = "remainder"  # rule: with all names together most of the error remains
 NEAR_NOMINAL = "near_nominal"  # rule: values are the nominal ones but for a few percent
 PLAIN = (
@@ -108,14 +109,24 @@ def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[
     fitted += first[SHORT_LIST:]
     rejected, best = [], None
     for name, found in fitted:
-        gain, errors = advantage(selected.blocks, found.blocks)
-        if gain < case.limits.gain:
-            rejected.append(Rejected(name, NO_GAIN, gain, case.limits.gain))
-        elif errors < case.limits.errors:
-            rejected.append(Rejected(name, "not_significant", errors, case.limits.errors))
+        if rejection := gains_too_little(name, advantage(selected.blocks, found.blocks), case.limits):
+            rejected.append(rejection)
         elif best is None or _penalised_score(found) < _penalised_score(best):
             best = found
     return best, tuple(rejected)
+
+
+def gains_too_little(name: str, gain: tuple[float, float], limits: SelectionLimits) -> Rejected | None:
+    """An effect whose gain on held-out motion is small or within its scatter; None otherwise.
+
+    Args:
+        name: the effect.
+        gain: mean of its gain over blocks, and that over its standard error.
+        limits: of both.
+    """
+    if gain[0] < limits.gain:
+        return Rejected(name, NO_GAIN, gain[0], limits.gain)
+    return Rejected(name, NOT_SIGNIFICANT, gain[1], limits.errors) if gain[1] < limits.errors else None
 
 
 def _penalised_score(selection: Selection) -> float:
@@ -155,20 +166,20 @@ def _backward(
 
 def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -> tuple[float, Rejected | None]:
     """The gain of an effect on held-out motion, and the rule that rejects it, None if none does."""
-    gain, errors = advantage(fewer.blocks, selected.blocks)
+    gain = advantage(fewer.blocks, selected.blocks)
     predicted = case.validation.predict(np.array([selected.law, fewer.law]))
     difference = float(np.sqrt(np.mean((predicted[0] - predicted[1]) ** 2)))
     change = relative_change(case.law, selected.law, name)
     limits = case.limits
+    if rejection := gains_too_little(name, gain, limits):
+        return gain[0], rejection
     for rule, value, limit in (
-        (NO_GAIN, gain, limits.gain),
-        ("not_significant", errors, limits.errors),
         ("below_resolution", difference, limits.steps * case.floor),
         (NEAR_NOMINAL, change, limits.change),
     ):
         if value < limit:
-            return gain, Rejected(name, rule, value, limit)
-    return gain, refuted_by_load(case, selected.law, name)
+            return gain[0], Rejected(name, rule, value, limit)
+    return gain[0], refuted_by_load(case, selected.law, name)
 
 
 def refuted_by_load(case: JointCase, law: np.ndarray, name: str) -> Rejected | None:
