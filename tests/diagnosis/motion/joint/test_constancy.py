@@ -42,9 +42,14 @@ def test_a_trend_is_as_large_as_the_change_where_a_gain_fades_from_nominal(nomin
     assert trend.parameter == "kp"
     assert trend.share == pytest.approx(share, abs=0.15)
     assert trend.least <= trend.share
+    assert first == last or trend.shown == pytest.approx(1.0, abs=0.2)
     assert trend.is_more_than(SelectionLimits().trend) == (first != last)
 
 
-@pytest.mark.parametrize(("share", "least", "more"), [(0.5, 0.06, True), (0.5, -0.06, False), (0.1, 0.06, False)])
-def test_a_trend_counts_where_it_is_large_and_beyond_scatter(share: float, least: float, more: bool):
-    assert Trend("kp", share, least).is_more_than(SelectionLimits().trend) == more
+@pytest.mark.parametrize(
+    ("share", "least", "shown", "more"),
+    [(0.5, 0.06, 0.9, True), (0.5, -0.06, 0.9, False), (0.1, 0.06, 0.9, False), (2.5, 1.8, -3.0, False)],
+    ids=["a trend", "scatter", "small", "a slope of stick and slip"],
+)
+def test_a_trend_counts_where_it_is_large_beyond_scatter_and_borne_out(share, least, shown, more):
+    assert Trend("kp", share, least, shown).is_more_than(SelectionLimits().trend) == more
