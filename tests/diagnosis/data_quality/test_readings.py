@@ -96,3 +96,11 @@ def _heavier(robot: Robot) -> np.ndarray:
 def test_every_reading_has_a_corruption() -> None:
     orders = {"joint_order"}
     assert set(CHECK_NAMES) == {*orders, "clock_scale", "position_unit", "torque_lag", "another_robot"}
+
+
+@pytest.mark.parametrize(("telling", "fits"), [(1, False), (2, True)])
+def test_of_an_arm_of_two_joints_both_must_speak(telling: int, fits: bool) -> None:
+    recorded, read = np.array([0.9, 0.9]), np.array([0.05, 0.7])
+    read[:telling] = 0.05
+    assert fits_far_better(read, recorded) == fits
+    assert fits_far_better(read[:1], recorded[:1])  # of one joint there is no other

@@ -64,12 +64,13 @@ def fits_far_better(misfits: np.ndarray, others: np.ndarray) -> bool:
     """Whether misfit < FITS and misfit / other < BETTER, as geometric means over the joints that tell the two apart.
 
     A joint whose torque the model explains neither way, such as a wrist of which it knows no friction, tells nothing.
+    Of an arm one joint is not enough: what it lacks may look so.
 
     Args:
         misfits, others: of each joint in two interpretations, shape (dof,).
     """
     telling = (np.fmin(misfits, others) < EXPLAINED) | ~(np.fmax(misfits, others) < WORSE)
-    if not telling.any() or telling.mean() < LEAST_JOINTS:
+    if telling.sum() < min(2, telling.size) or telling.mean() < LEAST_JOINTS:
         return False
     misfit = float(geometric_mean(misfits[telling]))
     return misfit < min(FITS, BETTER * float(geometric_mean(others[telling])))
