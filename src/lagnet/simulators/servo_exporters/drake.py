@@ -20,7 +20,9 @@ class DrakeServoExporter(ServoExporter):
     """Drake's MultibodyPlant."""
 
     torques = DrakeExporter()
-    apart: ClassVar[Mapping[str, Place]] = {"ki": BEFORE}
+    apart: ClassVar[Mapping[str, Place]] = {
+        "ki": nowhere("actuators have kp and kd: its torque belongs into the plant's actuation port")
+    }
     places: ClassVar[Mapping[str, Place]] = {
         **shared_places(torques),
         "gain_error": exact("JointActuator.set_controller_gains in run_drake.py"),

@@ -18,7 +18,7 @@ from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.surface import heights_of, levers_of
 
 LEAST_BLOCKS = 6  # of time in contact that evidence rests on
-LEAST_JOINTS = 2  # that it moves: a stop of one joint moves one joint alike
+LEAST_JOINTS = 2  # that it moves, and that it pushes: a stop of one joint pushes one
 LOW = 0.05  # share of the poses, the lowest, in which a surface pushes
 LEAST_LEVER = 0.2  # of a joint that it pushes, of the largest
 LEAST_SHARE = 0.5  # of the squared error where it acts that a named surface takes away
