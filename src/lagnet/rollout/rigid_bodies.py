@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from lagnet.rollout.vectors import cross, dot, minus, plus, put, scaled, times, turned, turned_tensor, vector
+
 Tree = tuple[np.ndarray, ...]  # KinematicTree.arrays()
 
 
@@ -17,181 +19,116 @@ Tree = tuple[np.ndarray, ...]  # KinematicTree.arrays()
 def place(tree, q, rotation, origin):  # pragma: no cover - compiled
     """Axes (dof, 3, 3) and origins (dof, 3) of every joint's frame in the frame of the base, written in place."""
     parents, rotations, translations, axes, sliding = tree[0], tree[1], tree[2], tree[3], tree[4]
-    turned = np.empty((3, 3))
     for i in range(q.size):
-        x, y, z = axes[i, 0], axes[i, 1], axes[i, 2]
-        s, c = (0.0, 1.0) if sliding[i] else (np.sin(q[i]), np.cos(q[i]))
-        t = 1.0 - c
-        turned[0, 0], turned[0, 1], turned[0, 2] = c + x * x * t, x * y * t - z * s, x * z * t + y * s
-        turned[1, 0], turned[1, 1], turned[1, 2] = y * x * t + z * s, c + y * y * t, y * z * t - x * s
-        turned[2, 0], turned[2, 1], turned[2, 2] = z * x * t - y * s, z * y * t + x * s, c + z * z * t
-        p = parents[i]
-        for a in range(3):
-            for b in range(3):
-                local = 0.0
-                for k in range(3):
-                    local += rotations[i, a, k] * turned[k, b]
-                rotation[i, a, b] = local
-            origin[i, a] = translations[i, a]
-            if sliding[i]:
-                for k in range(3):
-                    origin[i, a] += rotations[i, a, k] * axes[i, k] * q[i]
-        if p >= 0:
-            for b in range(3):
-                u0, u1, u2 = rotation[i, 0, b], rotation[i, 1, b], rotation[i, 2, b]
-                for a in range(3):
-                    rotation[i, a, b] = rotation[p, a, 0] * u0 + rotation[p, a, 1] * u1 + rotation[p, a, 2] * u2
-            u0, u1, u2 = origin[i, 0], origin[i, 1], origin[i, 2]
-            for a in range(3):
-                moved = rotation[p, a, 0] * u0 + rotation[p, a, 1] * u1 + rotation[p, a, 2] * u2
-                origin[i, a] = origin[p, a] + moved
+        p, at = parents[i], vector(translations, i)
+        if sliding[i]:
+            at = plus(at, scaled(q[i], turned(rotations, i, vector(axes, i))))
+        sine, cosine = (0.0, 1.0) if sliding[i] else (np.sin(q[i]), np.cos(q[i]))
+        for k in range(3):
+            column = turned(rotations, i, _turned_unit(vector(axes, i), sine, cosine, k))
+            if p >= 0:
+                column = turned(rotation, p, column)
+            rotation[i, 0, k], rotation[i, 1, k], rotation[i, 2, k] = column
+        put(origin, i, at if p < 0 else plus(vector(origin, p), turned(rotation, p, at)))
 
 
 @njit(cache=True, error_model="numpy")
-def _cross(a, b, out):  # pragma: no cover - compiled
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
-
-
-@njit(cache=True, error_model="numpy")
-def _in_base(tree, i, rotation, moment, tensor):  # pragma: no cover - compiled
-    """First moment (3,) and inertia tensor (3, 3) of body i about its joint's origin, in the axes of the base."""
-    body = tree[5][i]
-    r = rotation[i]
-    local = np.empty((3, 3))
-    local[0, 0], local[1, 1], local[2, 2] = body[4], body[6], body[9]
-    local[0, 1] = local[1, 0] = body[5]
-    local[0, 2] = local[2, 0] = body[7]
-    local[1, 2] = local[2, 1] = body[8]
-    for a in range(3):
-        moment[a] = r[a, 0] * body[1] + r[a, 1] * body[2] + r[a, 2] * body[3]
-        for b in range(3):
-            value = 0.0
-            for k in range(3):
-                for m in range(3):
-                    value += r[a, k] * local[k, m] * r[b, m]
-            tensor[a, b] = value
-
-
-@njit(cache=True, error_model="numpy")
-def _times(tensor, x, out):  # pragma: no cover - compiled
-    for a in range(3):
-        out[a] = tensor[a, 0] * x[0] + tensor[a, 1] * x[1] + tensor[a, 2] * x[2]
-
-
-@njit(cache=True, error_model="numpy")
-def _dot(a, b):  # pragma: no cover - compiled
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def _turned_unit(axis, s, c, k):  # pragma: no cover - compiled
+    """Column k of the rotation about an axis by an angle of sine s and cosine c."""
+    x, y, z = axis
+    t = (1.0 - c) * axis[k]
+    if k == 0:
+        return c + x * t, y * t + z * s, z * t - y * s
+    if k == 1:
+        return x * t - z * s, c + y * t, z * t + x * s
+    return x * t + y * s, y * t - x * s, c + z * t
 
 
 def workspace(n_dof: int) -> tuple[np.ndarray, ...]:
     """Arrays that `dynamics` writes in, made once for a rollout."""
-    return np.zeros((n_dof, 3, 3)), np.zeros((9, n_dof, 3)), np.zeros((n_dof, 3, 3)), np.zeros(n_dof), np.zeros((6, 3))
+    return np.zeros((n_dof, 3, 3)), np.zeros((9, n_dof, 3)), np.zeros((n_dof, 6)), np.zeros(n_dof)
 
 
 @njit(cache=True, error_model="numpy")
 def dynamics(tree, q, v, mass, bias, work):  # pragma: no cover - compiled
     """Mass matrix (dof, dof) and bias torque (dof,) at (q, v), written in place; all vectors in the base's axes."""
-    rotation, vectors, second, weight, small = work
+    rotation, vectors, second, weight = work
     place(tree, q, rotation, vectors[0])
-    _outwards(tree, v, rotation, vectors, second, weight, small)
+    _outwards(tree, v, rotation, vectors, second, weight)
     parents, sliding, armature = tree[0], tree[4], tree[6]
-    axis, force, couple, arm = vectors[1], vectors[5], vectors[6], vectors[8]
-    for i in range(q.size - 1, -1, -1):
-        bias[i] = _dot(axis[i], force[i]) if sliding[i] else _dot(axis[i], couple[i])
-        p = parents[i]
-        if p >= 0:
-            _cross(arm[i], force[i], small[0])
-            for k in range(3):
-                couple[p, k] += couple[i, k] + small[0, k]
-                force[p, k] += force[i, k]
-            _add_body(weight, vectors[7], second, p, i, arm[i])
-    _composite(parents, sliding, axis, arm, weight, vectors[7], second, mass, small)
-    for i in range(q.size):
+    axis, force, couple, first, arm = vectors[1], vectors[5], vectors[6], vectors[7], vectors[8]
+    mass[:] = 0.0
+    for i in range(q.size - 1, -1, -1):  # composite body i is whole before it is added to the one before
+        f, n, p = vector(force, i), vector(couple, i), parents[i]
+        bias[i] = dot(vector(axis, i), f if sliding[i] else n)
+        _asked_by(parents, sliding, axis, arm, weight, first, second, mass, i)
         mass[i, i] += armature[i]
+        if p >= 0:
+            put(couple, p, plus(vector(couple, p), plus(n, cross(vector(arm, i), f))))
+            put(force, p, plus(vector(force, p), f))
+            _add_body(weight, first, second, p, i, vector(arm, i))
 
 
 @njit(cache=True, error_model="numpy")
-def _outwards(tree, v, rotation, vectors, second, weight, small):  # pragma: no cover - compiled
+def _outwards(tree, v, rotation, vectors, second, weight):  # pragma: no cover - compiled
     """Spins, accelerations at a = 0 and the forces that they ask of each body alone, from the base to the tip."""
     parents, axes, sliding, bodies, gravity = tree[0], tree[3], tree[4], tree[5], tree[7]
-    origin, axis, spin, turn, push = vectors[0], vectors[1], vectors[2], vectors[3], vectors[4]
-    force, couple, first, arm = vectors[5], vectors[6], vectors[7], vectors[8]
-    a, b, c = small[0], small[1], small[2]
     for i in range(v.size):
-        p = parents[i]
-        _times(rotation[i], axes[i], axis[i])
-        for k in range(3):
-            spin[i, k], turn[i, k], push[i, k] = 0.0, 0.0, -gravity[k]
-            arm[i, k] = origin[i, k]
+        p, body, z = parents[i], bodies[i], turned(rotation, i, vector(axes, i))
+        spin, turn, push = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (-gravity[0], -gravity[1], -gravity[2])
+        arm = vector(vectors[0], i)
         if p >= 0:
-            for k in range(3):
-                arm[i, k] -= origin[p, k]
-            _cross(turn[p], arm[i], a)
-            _cross(spin[p], arm[i], b)
-            _cross(spin[p], b, c)
-            for k in range(3):
-                spin[i, k], turn[i, k] = spin[p, k], turn[p, k]
-                push[i, k] = push[p, k] + a[k] + c[k]
-            _cross(spin[p], axis[i], a)
-            for k in range(3):
-                if sliding[i]:
-                    push[i, k] += 2.0 * a[k] * v[i]
-                else:
-                    turn[i, k] += a[k] * v[i]
+            arm = minus(arm, vector(vectors[0], p))
+            spin, turn = vector(vectors[2], p), vector(vectors[3], p)
+            push = plus(vector(vectors[4], p), plus(cross(turn, arm), cross(spin, cross(spin, arm))))
+            across = scaled(v[i], cross(spin, z))
+            if sliding[i]:
+                push = plus(push, scaled(2.0, across))
+            else:
+                turn = plus(turn, across)
         if not sliding[i]:
-            for k in range(3):
-                spin[i, k] += axis[i, k] * v[i]
-        _in_base(tree, i, rotation, first[i], second[i])
-        weight[i] = bodies[i, 0]
-        _cross(turn[i], first[i], a)
-        _cross(spin[i], first[i], b)
-        _cross(spin[i], b, c)
-        for k in range(3):
-            force[i, k] = weight[i] * push[i, k] + a[k] + c[k]
-        _times(second[i], spin[i], a)
-        _cross(spin[i], a, b)
-        _times(second[i], turn[i], c)
-        _cross(first[i], push[i], a)
-        for k in range(3):
-            couple[i, k] = a[k] + b[k] + c[k]
+            spin = plus(spin, scaled(v[i], z))
+        first = turned(rotation, i, (body[1], body[2], body[3]))
+        tensor = turned_tensor(rotation, i, (body[4], body[5], body[7], body[6], body[8], body[9]))
+        force = plus(scaled(body[0], push), plus(cross(turn, first), cross(spin, cross(spin, first))))
+        couple = plus(times(tensor, turn), plus(cross(spin, times(tensor, spin)), cross(first, push)))
+        weight[i] = body[0]
+        for k, x in enumerate((z, spin, turn, push, force, couple, first, arm)):
+            put(vectors[1 + k], i, x)
+        for k in range(6):
+            second[i, k] = tensor[k]
 
 
 @njit(cache=True, error_model="numpy")
 def _add_body(weight, first, second, p, i, arm):  # pragma: no cover - compiled
     """Adds composite body i, whose origin lies at `arm` from that of body p, to body p (parallel axes)."""
-    m = weight[i]
-    along = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]
-    across = arm[0] * first[i, 0] + arm[1] * first[i, 1] + arm[2] * first[i, 2]
-    for k in range(3):
-        for j in range(3):
-            second[p, k, j] += second[i, k, j] - m * arm[k] * arm[j] - arm[k] * first[i, j] - first[i, k] * arm[j]
-        second[p, k, k] += m * along + 2.0 * across
-    for k in range(3):
-        first[p, k] += first[i, k] + m * arm[k]
+    m, own = weight[i], vector(first, i)
+    x, y, z = arm
+    moved = plus(own, scaled(m, arm))
+    round_all = dot(arm, plus(own, moved))  # m |arm|² + 2 armᵀ first
+    second[p, 0] += second[i, 0] + round_all - x * (moved[0] + own[0])
+    second[p, 1] += second[i, 1] - x * moved[1] - own[0] * y
+    second[p, 2] += second[i, 2] - x * moved[2] - own[0] * z
+    second[p, 3] += second[i, 3] + round_all - y * (moved[1] + own[1])
+    second[p, 4] += second[i, 4] - y * moved[2] - own[1] * z
+    second[p, 5] += second[i, 5] + round_all - z * (moved[2] + own[2])
+    put(first, p, plus(vector(first, p), moved))
     weight[p] += m
 
 
 @njit(cache=True, error_model="numpy")
-def _composite(parents, sliding, axis, arm, weight, first, second, mass, small):  # pragma: no cover - compiled
-    """M from the force and couple that a unit acceleration of each joint asks of the composite body behind it."""
-    force, couple, moved = small[3], small[4], small[5]
-    mass[:] = 0.0
-    for i in range(axis.shape[0]):
-        if sliding[i]:
-            for k in range(3):
-                force[k] = weight[i] * axis[i, k]
-            _cross(first[i], axis[i], couple)
-        else:
-            _cross(axis[i], first[i], force)
-            _times(second[i], axis[i], couple)
-        j = i
-        while j >= 0:
-            value = _dot(axis[j], force) if sliding[j] else _dot(axis[j], couple)
-            mass[i, j] = value
-            mass[j, i] = value
-            _cross(arm[j], force, moved)
-            for k in range(3):
-                couple[k] += moved[k]
-            j = parents[j]
+def _asked_by(parents, sliding, axis, arm, weight, first, second, mass, i):  # pragma: no cover - compiled
+    """Row and column i of M up to i: force and couple that a unit acceleration of joint i asks of what is behind it."""
+    z, own = vector(axis, i), vector(first, i)
+    if sliding[i]:
+        force, couple = scaled(weight[i], z), cross(own, z)
+    else:
+        tensor = (second[i, 0], second[i, 1], second[i, 2], second[i, 3], second[i, 4], second[i, 5])
+        force, couple = cross(z, own), times(tensor, z)
+    j = i
+    while j >= 0:
+        value = dot(vector(axis, j), force if sliding[j] else couple)
+        mass[i, j] = value
+        mass[j, i] = value
+        couple = plus(couple, cross(vector(arm, j), force))
+        j = parents[j]
