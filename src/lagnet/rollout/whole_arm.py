@@ -1,9 +1,9 @@
 """Rollouts of a whole servo-driven arm by its commands alone, all joints coupled, with exact stick and slip.
 
 Each step of h solves M v' + h D v' + h² K/4 v' = M v + h (τ − b − K h v/4) − h F sign(v') for all speeds and dry
-frictions together: the minimum of ½ v'ᵀ A v' − nᵀ v' + h Σ Fᵢ |v'ᵢ|, found joint by joint (projected Gauss–Seidel).
-A joint whose net torque stays below its friction gets v' = 0 to the last bit; one that reverses is at rest between, and
-goes on only beyond its break-away friction. A joint whose transmission yields has a motor, solved with its link.
+frictions together (`settling`). A joint whose net torque stays below its friction gets v' = 0 to the last bit; one that
+reverses is at rest between, and goes on only beyond its break-away friction. A joint whose transmission yields has a
+motor, solved with its link.
 Sources: Moreau 1988; Stewart & Trinkle 1996.
 """
 
@@ -18,10 +18,10 @@ from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.damper import explicit_share
 from lagnet.rollout.driven import drive_torque
 from lagnet.rollout.rigid_bodies import dynamics, workspace
-from lagnet.rollout.surface import HARDNESS, height_above, pressed, sliding_friction
-from lagnet.rollout.transmission import joined_speeds, motor_row, twist_at_rest, yields
+from lagnet.rollout.settling import settle, settling_space
+from lagnet.rollout.surface import HARDNESS, height_above, sliding_friction
+from lagnet.rollout.transmission import motor_row, twist_at_rest, yields
 from lagnet.servos.command_delay import command_integral
-from lagnet.servos.friction import dry_friction, falls_with_speed
 from lagnet.servos.parameters import (
     BIAS,
     DELAY,
@@ -37,8 +37,6 @@ from lagnet.servos.parameters import (
 )
 
 FINE = 0.001  # [s] longest step where a motor is apart from its link
-SWEEPS = 50  # of Gauss–Seidel at most; a few suffice where rotors outweigh the coupling
-STILL = 1e-12  # [rad/s] change of a sweep below which it has converged
 FARTHEST = 1e6  # [rad] beyond which a rollout has diverged
 
 
@@ -86,12 +84,12 @@ def roll_out_arm(
     nothing = surface is None or not np.any(tree.gravity)  # without weight there is no up
     touched = np.zeros(0) if nothing else np.ascontiguousarray(surface, dtype=float)
     laws = np.ascontiguousarray(parameters, dtype=float)
-    _roll_arm(bare, laws, signals, start, touched, step, workspace(dof), out)
+    _roll_arm(bare, laws, signals, start, touched, step, workspace(dof), settling_space(dof), out)
     return out
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _roll_arm(tree, parameters, signals, start, surface, step, work, out):  # pragma: no cover - compiled
+def _roll_arm(tree, parameters, signals, start, surface, step, work, space, out):  # pragma: no cover - compiled
     time, command, integral, ratio, gain, enabled = signals
     q, v = start
     dof, last = q.size, time.size - 1
@@ -102,7 +100,7 @@ def _roll_arm(tree, parameters, signals, start, surface, step, work, out):  # pr
     cursor = np.zeros(dof, dtype=np.int64)
     out[0] = q
     apart = np.zeros(dof, dtype=np.bool_)
-    angle, w, rows, sides = q.copy(), v.copy(), np.zeros((dof, 4)), np.zeros(dof)  # of motors
+    angle, w, rows, sides, twist = q.copy(), v.copy(), np.zeros((dof, 4)), np.zeros(dof), np.empty(dof)  # of motors
     for j in range(dof):
         apart[j] = yields(parameters[j])
     if apart.any():
@@ -164,19 +162,9 @@ def _roll_arm(tree, parameters, signals, start, surface, step, work, out):  # pr
             for j in range(dof):  # q moves half a step by the old speed, half by the new
                 q[j] += 0.5 * h * v[j]
                 angle[j] += 0.5 * h * w[j]
-            twist = angle - q - 0.5 * h * (w - v)  # before the step
-            _settle(
-                parameters,
-                a,
-                free,
-                load,
-                motor,
-                push,
-                h,
-                v,
-                (apart, rows, twist, w, sides),
-                (slopes[0], height, hardness),
-            )
+                twist[j] = angle[j] - q[j] - 0.5 * h * (w[j] - v[j])  # before the step
+            motors, contact = (apart, rows, twist, w, sides), (slopes[0], height, hardness)
+            settle(parameters, a, free, load, motor, push, h, v, motors, contact, space)
             for j in range(dof):
                 q[j] += 0.5 * h * v[j]
                 angle[j] += 0.5 * h * w[j]
@@ -210,49 +198,3 @@ def _integral(t, last, k, time, command, integral, j):  # pragma: no cover - com
     while k < last and time[k + 1] <= t:
         k += 1
     return integral[k, j] + command[k, j] * (t - time[k]), k
-
-
-@njit(cache=True, error_model="numpy")
-def _settle(parameters, a, free, load, motor, push, h, v, motors, contact):  # pragma: no cover - compiled
-    """Speeds at the end of a step with the dry frictions that go with them, written into v; push: torques at rest.
-
-    motors: of yielding transmissions, with their speeds and sides of contact, written in place; contact: see `pressed`.
-    """
-    apart, rows, twist, w, sides = motors
-    old, before = v.copy(), w.copy()
-    for _ in range(SWEEPS):
-        moved = 0.0
-        for j in range(v.size):
-            rest, alone = free[j], h * push[j]
-            for m in range(v.size):
-                if m != j:
-                    rest -= a[j, m] * v[m]
-                    alone -= a[j, m] * (v[m] - old[m])
-            if apart[j]:
-                own = (rows[j, 0], rows[j, 1], rows[j, 2], rows[j, 3])
-                w[j], new, sides[j] = joined_speeds(
-                    parameters[j], own, a[j, j], rest, twist[j], before[j], old[j], load[j], motor[j], h
-                )
-                moved = max(moved, abs(new - v[j]))
-                v[j] = new
-                continue
-            new, side = _slowed(parameters[j], old[j], load[j], motor[j], rest, a[j, j], h)
-            heavier, pushed = pressed(contact, v, j, new, h)
-            if heavier > 0.0:
-                new, side = _slowed(parameters[j], old[j], load[j], motor[j], rest + pushed, a[j, j] + heavier, h)
-                alone += pushed if pushed * contact[0][j] > 0.0 else 0.0
-            passes = falls_with_speed(parameters[j]) and old[j] * new < 0.0
-            if passes and abs(alone) <= h * dry_friction(parameters[j], 0.0, load[j], motor[j], side):
-                new = 0.0  # it rests between
-            moved = max(moved, abs(new - v[j]))
-            v[j] = new
-        if moved < STILL:
-            break
-
-
-@njit(cache=True, error_model="numpy")
-def _slowed(p, v, load, motor, rest, inertia, h):  # pragma: no cover - compiled
-    """Speed of a joint that `rest` would push to rest / inertia, with its dry friction; the side it is pushed to."""
-    side = 1.0 if rest > 0.0 else -1.0
-    dry = h * dry_friction(p, v, load, motor, side)
-    return (0.0 if abs(rest) <= dry else (rest - side * dry) / inertia), side
