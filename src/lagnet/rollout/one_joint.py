@@ -90,19 +90,20 @@ def roll_out(parameters: np.ndarray, series: JointSeries, windows: Windows, step
     parameters = np.atleast_2d(np.ascontiguousarray(parameters, dtype=float))
     out = np.tile(series.q, (len(parameters), 1))
     where = (windows.first, windows.last, windows.floor, windows.speed)
-    _roll_sets(parameters, series.arrays(), where, step, out)
+    for law, predicted in zip(parameters.tolist(), out, strict=True):
+        _roll_law(tuple(law), series.arrays(), where, step, predicted)
     return out
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _roll_sets(parameters, series, windows, step, out):  # pragma: no cover - compiled
-    for s in range(parameters.shape[0]):
-        for w in range(windows[0].size):
-            where = (windows[0][w], windows[1][w], windows[2][w])
-            if yields(parameters[s]):
-                roll_yielding(parameters[s], series, where, windows[3][w], min(step, FINE), out[s])
-            else:
-                _roll_window(parameters[s], series, where, windows[3][w], step, out[s])
+def _roll_law(p, series, windows, step, out):  # pragma: no cover - compiled
+    """Every window under one law; a tuple, whose numbers no write into `out` can change: they stay in registers."""
+    for w in range(windows[0].size):
+        where = (windows[0][w], windows[1][w], windows[2][w])
+        if yields(p):
+            roll_yielding(p, series, where, windows[3][w], min(step, FINE), out)
+        else:
+            _roll_window(p, series, where, windows[3][w], step, out)
 
 
 @njit(cache=True, error_model="numpy")

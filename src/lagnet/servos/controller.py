@@ -29,11 +29,11 @@ def controller_torque(p, error, integral, v, ratio, gain):  # pragma: no cover -
     full = ratio * p[KP] * p[FULL_ERROR]
     within = abs(torque) <= full
     torque = min(max(torque, -full), full)
-    lost = 1.0 + p[SATURATION] * abs(torque)
-    torque /= lost
-    limit = ratio * p[LIMIT]
+    slope, limit = ratio, ratio * p[LIMIT]
+    if p[SATURATION] != 0.0:
+        lost = 1.0 + p[SATURATION] * abs(torque)
+        torque, slope = torque / lost, ratio / (lost * lost)
     if abs(torque) > limit or not within:
         return min(max(torque, -limit), limit), 0.0, 0.0
-    slope = ratio / (lost * lost)
     stiffness = gain * slope * p[KP] if beyond != 0.0 or p[DEAD_BAND] == 0.0 else 0.0
     return torque, stiffness, slope * p[KD]
