@@ -74,7 +74,8 @@ def standard_errors(
         scale: robust scale of the residual [rad].
         floor: what the encoder shows [rad].
     """
-    predicted, jacobian = sensitivities(data, coordinates, law)
+    predicted = data.predict(law)[0]
+    jacobian = sensitivities(data, coordinates, law, predicted)
     residual = predicted - data.series.q
     weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * scale))
     normal = (jacobian * weight[:, None]).T @ jacobian

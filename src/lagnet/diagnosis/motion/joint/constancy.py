@@ -120,7 +120,8 @@ class _Fit:
 
 
 def _fit_of(data: JointData, coordinates: Coordinates, law: np.ndarray, floor: float, through: np.ndarray) -> _Fit:
-    predicted, jacobian = sensitivities(data, coordinates, law)
+    predicted = data.predict(law)[0]
+    jacobian = sensitivities(data, coordinates, law, predicted)
     residual = predicted - data.series.q
     weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * robust_scale(residual, floor)))
     return _Fit(data, coordinates, law, through, residual, weight, jacobian)

@@ -99,14 +99,14 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
 
 
 def sensitivities(
-    data: JointData, coordinates: Coordinates, law: np.ndarray, difference: float = DIFFERENCE
-) -> tuple[np.ndarray, np.ndarray]:
-    """q̂, shape (n,), and ∂q̂/∂x by the coordinates in units of their sizes, shape (n, k)."""
+    data: JointData, coordinates: Coordinates, law: np.ndarray, predicted: np.ndarray, difference: float = DIFFERENCE
+) -> np.ndarray:
+    """∂q̂/∂x by the coordinates in units of their sizes, shape (n, k); predicted: q̂ of the law, shape (n,)."""
     values = coordinates.read(law)
     signs = np.where(values + difference * coordinates.sizes > coordinates.upper, -1.0, 1.0)
     moved = values + np.diag(signs * difference * coordinates.sizes)
-    found = data.predict(np.vstack([coordinates.write(law, values), coordinates.write(law, moved)]))
-    return found[0], ((found[1:] - found[0]) / (signs[:, None] * difference)).T
+    found = data.predict(coordinates.write(law, moved))
+    return ((found - predicted) / (signs[:, None] * difference)).T
 
 
 def fit_law(
@@ -133,24 +133,25 @@ def fit_law(
     law = coordinates.write(law, coordinates.read(law))[0]
     start = coordinates.read(law) / coordinates.sizes
     jacobian = np.zeros((len(data.series.q), 0))
-    residual = data.errors(law)
-    cost = float(np.mean(huber(residual, scale)))
+    measured, predicted = data.series.q, data.predict(law)[0]
+    cost = float(np.mean(huber(predicted - measured, scale)))
     differences = [DIFFERENCE, *(DIFFERENCE * c for c in COARSER if patient)]
     for _ in range(iterations if coordinates.groups else 0):
-        predicted, jacobian = sensitivities(data, coordinates, law, differences[0])
+        jacobian = sensitivities(data, coordinates, law, predicted, differences[0])
         values = coordinates.read(law) / coordinates.sizes
-        steps = _steps(jacobian, predicted - data.series.q, scale, values - start, coordinates, values)
+        steps = _steps(jacobian, predicted - measured, scale, values - start, coordinates, values)
         laws = coordinates.write(law, (values + steps) * coordinates.sizes)
-        costs = np.array([np.mean(huber(r, scale)) for r in data.predict(laws) - data.series.q])
+        tried = data.predict(laws)
+        costs = np.array([np.mean(huber(r, scale)) for r in tried - measured])
         best = int(np.nanargmin(costs))
         gain = cost - float(costs[best])
         if gain > 0.0:
-            cost, law = float(costs[best]), laws[best]
+            cost, law, predicted = float(costs[best]), laws[best], tried[best]
         if not gain > tolerance * cost:
             differences = differences[1:]
         if not differences:
             break
-    return Fitted(law, cost, data.errors(law), jacobian, scale)
+    return Fitted(law, cost, predicted - measured, jacobian, scale)
 
 
 def _steps(

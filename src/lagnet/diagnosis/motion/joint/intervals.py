@@ -21,7 +21,8 @@ def law_intervals(
     """95 % interval of every free law parameter, by name; scale and resolution of the residual in rad."""
     if not coordinates.groups:
         return {}
-    predicted, jacobian = sensitivities(data, coordinates, law)
+    predicted = data.predict(law)[0]
+    jacobian = sensitivities(data, coordinates, law, predicted)
     residual = predicted - data.series.q
     weight = 1.0 / np.maximum(1.0, np.abs(residual) / (HUBER * scale))
     rows = zip(data.windows.first, data.windows.last, strict=True)
