@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +13,7 @@ from lagnet.diagnosis.motion.joint.block_scores import BLOCKS, LONGEST, SHORTEST
 from lagnet.diagnosis.motion.problem import MotionProblem, Run, surest_edges
 from lagnet.recordings.sampling import spread_rows
 from lagnet.rollout.whole_arm import roll_out_arm
+from lagnet.side_by_side import side_by_side
 
 STEP = 0.004  # [s] of a rollout at most
 SAMPLES = 8000  # that a fit rolls out
@@ -42,21 +44,48 @@ class ArmRuns:
             body: shape (10,), inertial parameters added to the last link.
             surface: shape (len(SURFACE),), what a point of the arm may rest on; None: nothing.
         """
-        series, bodies = self.problem.series, self.problem.tree.bodies.copy()
-        begun = {run.first: v for run, v in zip(self.problem.runs, self.problem.start_speed, strict=True)}
+        return self.of_joints(self.positions(laws, body, surface))
+
+    def positions(
+        self, laws: np.ndarray, body: np.ndarray | None = None, surface: np.ndarray | None = None
+    ) -> list[np.ndarray]:
+        """Predicted positions of all joints in every run, each of shape (samples, dof) [rad or m]; args of `errors`."""
+        return self.positions_in(range(len(self.runs)), laws, body, surface)
+
+    def positions_in(
+        self, which: Sequence[int], laws: np.ndarray, body: np.ndarray | None, surface: np.ndarray | None
+    ) -> list[np.ndarray]:
+        """`positions` in some of the runs, by their places among them."""
+        bodies = self.problem.tree.bodies.copy()
         if body is not None:
             bodies[-1] += body
-        tree, out = replace(self.problem.tree, bodies=bodies), []
+        tree = replace(self.problem.tree, bodies=bodies)
+
+        def rolled(i: int) -> np.ndarray:
+            d = self._driven[i]
+            signals = {"v0": d.v0, "ratio": d.ratio, "gain": d.gain, "enabled": d.enabled}
+            return roll_out_arm(tree, laws, d.time, d.command, d.q[0], **signals, surface=surface, step=STEP)
+
+        return side_by_side(rolled, which)
+
+    def of_joints(self, positions: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Predicted less measured positions of each joint over all runs, each of shape (n,), of `positions`."""
+        errors = [p - d.q for p, d in zip(positions, self._driven, strict=True)]
+        return [np.concatenate([e[:, j] for e in errors]) for j in self.joints]
+
+    @cached_property
+    def _driven(self) -> list[_Driven]:
+        begun = {run.first: v for run, v in zip(self.problem.runs, self.problem.start_speed, strict=True)}
+        out = []
         for run in self.runs:
             rows = slice(run.first, run.last + 1)
-            command, q, ratio, gain, enabled = (
-                np.column_stack([getattr(s, name)[rows] for s in series])
+            signals = (
+                np.column_stack([getattr(s, name)[rows] for s in self.problem.series])
                 for name in ("command", "q", "ratio", "gain", "enabled")
             )
             v0 = begun.get(run.first, self.problem.speed[run.first])
-            signals = {"v0": v0, "ratio": ratio, "gain": gain, "enabled": enabled, "surface": surface, "step": STEP}
-            out.append(roll_out_arm(tree, laws, series[0].time[rows], command, q[0], **signals) - q)
-        return [np.concatenate([e[:, j] for e in out]) for j in self.joints]
+            out.append(_Driven(self.problem.series[0].time[rows], v0, *signals))
+        return out
 
     def scores(self, errors: Sequence[np.ndarray], floors: np.ndarray) -> np.ndarray:
         """½ log(mean e² + floor²) of every joint in every block of time, as in `block_scores`; smaller is better."""
@@ -70,6 +99,19 @@ class ArmRuns:
             for count, a, b in zip(counts, edges, edges[1:], strict=False):
                 out += [0.5 * np.log(np.mean(p**2) + floor**2) for p in np.array_split(error[a:b], count)]
         return np.array(out)
+
+
+@dataclass(frozen=True, eq=False)
+class _Driven:
+    """What a run is rolled out by: time (n,), speed of the joints at its begin (dof,), and signals (n, dof)."""
+
+    time: np.ndarray
+    v0: np.ndarray
+    command: np.ndarray
+    q: np.ndarray
+    ratio: np.ndarray
+    gain: np.ndarray
+    enabled: np.ndarray
 
 
 def runs_to_fit(problem: MotionProblem, fitted: int) -> tuple[Run, ...]:
