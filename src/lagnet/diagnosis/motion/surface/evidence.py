@@ -14,6 +14,7 @@ import numpy as np
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns
 from lagnet.diagnosis.motion.joint.block_scores import advantage
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
+from lagnet.diagnosis.motion.surface.free_motion import FreeMotion
 from lagnet.rigid_body.kinematic_tree import KinematicTree
 from lagnet.rollout.surface import heights_of, levers_of
 
@@ -67,19 +68,16 @@ class Touched:
         return gain >= limits.gain and errors >= limits.errors and self.left**2 <= 1.0 - LEAST_SHARE
 
 
-def touched(
-    data: ArmRuns, laws: tuple[np.ndarray, np.ndarray], body: np.ndarray | None, surface: np.ndarray, floors: np.ndarray
-) -> Touched:
+def touched(nominal: list[np.ndarray], over: FreeMotion, surface: np.ndarray, floors: np.ndarray) -> Touched:
     """The blocks of some runs in which a surface moves a joint by more than its floor.
 
     Args:
-        data: runs that the surface was not fitted to.
-        laws: nominal and corrected, each of shape (dof, len(LAW)).
-        body: shape (10,), carried by the last link, or None.
+        nominal: errors of every joint by the nominal arm.
+        over: runs that the surface was not fitted to, as the corrected laws predict them.
         surface: shape (len(SURFACE),).
         floors: shape (joints,), resolution of the errors [rad].
     """
-    nominal, free, held = data.errors(laws[0]), data.errors(laws[1], body), data.errors(laws[1], body, surface)
+    data, free, held = over.data, over.errors(), over.errors(surface)
     apart = [a - b for a, b in zip(free, held, strict=True)]
     scales = _usual_errors(data, free, apart, floors)
     acts = (_by_joint(data, apart, scales) > 0.5 * np.log(2.0 * scales**2)[:, None]).T

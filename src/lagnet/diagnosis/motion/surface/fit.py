@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.fitting import Errors, cost_of, fit_values, robust_scales, sensitivities_of
-from lagnet.diagnosis.motion.arm.rollouts import ArmRuns
+from lagnet.diagnosis.motion.surface.free_motion import FreeMotion
 from lagnet.diagnosis.motion.surface.starts import reach_of
-from lagnet.rollout.surface import BODY, FRICTION, HARDNESS
+from lagnet.rollout.surface import BODY, FRICTION, HARDNESS, HEIGHT
 from lagnet.side_by_side import side_by_side
 
 ITERATIONS = 12  # of each round, at most
@@ -40,42 +40,52 @@ def possible_surface(x: np.ndarray) -> np.ndarray:
     return np.array([*x[:4], min(x[4], MOST_LOG_HARDNESS), min(max(x[5], 0.0), ROUGHEST)])
 
 
-def surface_errors(data: ArmRuns, laws: np.ndarray, body: np.ndarray | None, touching: float) -> Errors:
+def surface_errors(free: FreeMotion, touching: float) -> Errors:
     """Errors of every joint as a function of x."""
-    return lambda x: data.errors(laws, body, surface_of(touching, x))
+    return lambda x: free.errors(surface_of(touching, x))
 
 
 def fit_surfaces(
-    data: ArmRuns,
-    laws: np.ndarray,
-    body: np.ndarray | None,
-    starts: list[np.ndarray],
-    floors: np.ndarray,
-    iterations: int = ITERATIONS,
+    free: FreeMotion, starts: list[np.ndarray], floors: np.ndarray, iterations: int = ITERATIONS
 ) -> list[np.ndarray]:
     """For each touching body the surface of least cost, shape (len(SURFACE),); none where no start gains anything.
 
+    From each point of a body the best start is fitted: which of them ends lower is not known before.
+
     Args:
-        data: runs to fit.
-        laws: shape (dof, len(LAW)); body: shape (10,), carried by the last link, or None.
+        free: runs to fit, as the laws predict them without a surface.
         starts: surfaces to start from.
         floors: shape (joints,), resolution of the errors [rad].
         iterations: of each round, at most.
     """
-    free = data.errors(laws, body)
-    scales = robust_scales(free, floors)
-    costs = side_by_side(lambda s: cost_of(data.errors(laws, body, s), scales), starts)
-    before, sizes = cost_of(free, scales), sizes_of_surface(reach_of(data.problem.tree))
+    scales = robust_scales(free.errors(), floors)
 
-    def fitted(touching: float) -> np.ndarray | None:
-        best = min((i for i, s in enumerate(starts) if s[BODY] == touching), key=lambda i: costs[i])
-        if costs[best] > (1.0 - LEAST_GAIN) * before:
-            return None
-        errors = surface_errors(data, laws, body, touching)
-        x = coordinates_of(starts[best])
+    def cost(surface: np.ndarray) -> float:
+        return cost_of(free.errors(surface), scales)
+
+    most, sizes = (
+        (1.0 - LEAST_GAIN) * cost_of(free.errors(), scales),
+        sizes_of_surface(reach_of(free.data.problem.tree)),
+    )
+    begun = _best_of_points(starts, side_by_side(cost, starts), most)
+
+    def fitted(start: np.ndarray) -> tuple[float, np.ndarray]:
+        errors, x = surface_errors(free, start[BODY]), coordinates_of(start)
         slopes = sensitivities_of(errors, sizes, possible_surface)
         x = fit_values(errors, slopes, x, sizes, floors, nearest=possible_surface, iterations=iterations)
-        return surface_of(touching, x)
+        surface = surface_of(start[BODY], x)
+        return cost(surface), surface
 
-    found = side_by_side(fitted, sorted({s[BODY] for s in starts}))
-    return [surface for surface in found if surface is not None]
+    found = side_by_side(fitted, begun)
+    own = ([f for f in found if f[1][BODY] == body] for body in sorted({s[BODY] for s in begun}))
+    return [min(surfaces, key=lambda f: f[0])[1] for surfaces in own]
+
+
+def _best_of_points(starts: list[np.ndarray], costs: list[float], most: float) -> list[np.ndarray]:
+    """Of every point of a body the start of least cost, where that is at most `most`."""
+    best: dict[tuple[float, ...], tuple[float, np.ndarray]] = {}
+    for start, cost in zip(starts, costs, strict=True):
+        point = tuple(start[:HEIGHT])
+        if cost <= most and (point not in best or cost < best[point][0]):
+            best[point] = (cost, start)
+    return [start for _, start in best.values()]

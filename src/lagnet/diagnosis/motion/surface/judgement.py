@@ -29,6 +29,7 @@ from lagnet.diagnosis.motion.surface.fit import (
     surface_of,
 )
 from lagnet.diagnosis.motion.surface.found import SurfaceFound
+from lagnet.diagnosis.motion.surface.free_motion import FreeMotion, free_motion
 from lagnet.diagnosis.motion.surface.profile import Profile, profile_of
 from lagnet.diagnosis.motion.surface.starts import lowest_runs, reach_of, starts_of_surface
 from lagnet.rollout.surface import BODY, heights_of
@@ -62,32 +63,34 @@ def judge_surface(
         corrected[joint] = d.law
     floors = np.array([d.case.floor for d in found.values()])
     data = ArmRuns(problem, lowest_runs(problem, fitted), tuple(found))
-    if not _may_touch(problem, corrected, data, body, floors, limits):
+    free = free_motion(data, corrected, body)
+    if not _may_touch(free, floors, limits):
         return None
     nominal = laws.copy()
     for joint, d in found.items():
         nominal[joint] = d.nominal
-    pair, starts = (nominal, corrected), starts_of_surface(problem, fitted, corrected)
-    held = ArmRuns(problem, runs_held_out(problem, fitted), tuple(found))
+    starts = starts_of_surface(problem, fitted, corrected)
+    held = free_motion(ArmRuns(problem, runs_held_out(problem, fitted), tuple(found)), corrected, body)
+    before = held.data.errors(nominal)
 
     def evidence_of(surface: np.ndarray) -> _Judged:
         own = [s for s in starts if s[BODY] == surface[BODY]]
-        whole = touched(held, pair, body, surface, floors)
-        halves = _by_halves(data, pair, body, surface, own, floors) if whole.left <= 1.0 else []
+        whole = touched(before, held, surface, floors)
+        halves = _by_halves(free, nominal, surface, own, floors) if whole.left <= 1.0 else []
         return _Judged(surface, together([whole, *(t for t, _ in halves)]), [s for _, s in halves])
 
-    judged = side_by_side(evidence_of, fit_surfaces(data, corrected, body, starts, floors))
+    judged = side_by_side(evidence_of, fit_surfaces(free, starts, floors))
     judged = [j for j in judged if j.evidence.helps(limits)]
     if not judged:
         return None
     best = min(judged, key=lambda j: j.evidence.left)
-    profile = profile_of(data, corrected, body, best.surface, floors)
+    profile = profile_of(free, best.surface, floors)
     finer = surface_of(best.surface[BODY], profile.best)
-    errors = [held.errors(corrected, body, s) for s in (best.surface, finer)]
+    errors = [held.errors(s) for s in (best.surface, finer)]
     scales = robust_scales(errors[0], floors)
     if cost_of(errors[1], scales) <= cost_of(errors[0], scales):
         best = replace(best, surface=finer)
-    return _found(data, corrected, body, best, profile, floors, limits, found)
+    return _found(free, best, profile, floors, limits, found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,36 +102,27 @@ class _Judged:
     halves: list[np.ndarray]
 
 
-def _may_touch(
-    problem: MotionProblem,
-    laws: np.ndarray,
-    data: ArmRuns,
-    body: np.ndarray | None,
-    floors: np.ndarray,
-    limits: SelectionLimits,
-) -> bool:
+def _may_touch(free: FreeMotion, floors: np.ndarray, limits: SelectionLimits) -> bool:
     """Whether there is weight, more than one joint, no motor apart from its link, and an error left in low poses."""
-    if len(data.joints) < 2 or not np.any(problem.tree.gravity) or laws[:, [STIFFNESS, GAP]].any():
+    data = free.data
+    if len(data.joints) < 2 or not np.any(data.problem.tree.gravity) or free.laws[:, [STIFFNESS, GAP]].any():
         return False
-    left = [float(np.sqrt(np.mean(e**2))) for e in data.errors(laws, body)]
+    left = [float(np.sqrt(np.mean(e**2))) for e in free.errors()]
     return any(e > limits.unexplained * f for e, f in zip(left, floors, strict=True))
 
 
 def _by_halves(
-    data: ArmRuns,
-    laws: tuple[np.ndarray, np.ndarray],
-    body: np.ndarray | None,
-    surface: np.ndarray,
-    starts: list[np.ndarray],
-    floors: np.ndarray,
+    free: FreeMotion, nominal: np.ndarray, surface: np.ndarray, starts: list[np.ndarray], floors: np.ndarray
 ) -> list[tuple[Touched, np.ndarray]]:
     """Evidence on each half of the fitted runs from a surface fitted to the other, and that one; none of one run."""
-    halves, out = _halves(data, surface), []
-    if not all(half.runs for half in halves):
+    parts, out = _halves(free.data, surface), []
+    if not all(part.runs for part in parts):
         return []
+    halves = [free_motion(part, free.laws, free.body) for part in parts]
     for fit, other in (halves, halves[::-1]):
-        for found in fit_surfaces(fit, laws[1], body, starts, floors, FEW):
-            out.append((touched(other, laws, body, found, floors), found))
+        before = other.data.errors(nominal)
+        for found in fit_surfaces(fit, starts, floors, FEW):
+            out.append((touched(before, other, found, floors), found))
     return out
 
 
@@ -148,9 +142,7 @@ def _halves(data: ArmRuns, surface: np.ndarray) -> tuple[ArmRuns, ArmRuns]:
 
 
 def _found(
-    data: ArmRuns,
-    laws: np.ndarray,
-    body: np.ndarray | None,
+    free: FreeMotion,
     judged: _Judged,
     profile: Profile,
     floors: np.ndarray,
@@ -158,9 +150,9 @@ def _found(
     found: Mapping[int, JointDiagnosis],
 ) -> SurfaceFound:
     """The surface with its intervals."""
-    surface, evidence = judged.surface, judged.evidence
+    data, surface, evidence = free.data, judged.surface, judged.evidence
     x = coordinates_of(surface)
-    half = _half_widths(data, laws, body, judged, floors)
+    half = _half_widths(free, judged, floors)
     ends_of = profile.ends()
     lower, upper = np.minimum(x - half, ends_of[0]), np.maximum(x + half, ends_of[1])
     values: dict[str, float] = dict(zip(NAMES, map(float, surface[1:]), strict=True))
@@ -181,16 +173,14 @@ def _found(
     return SurfaceFound(surface, name, values, ends, named, pushed, evidence.gain[1], sides, share, scale)
 
 
-def _half_widths(
-    data: ArmRuns, laws: np.ndarray, body: np.ndarray | None, judged: _Judged, floors: np.ndarray
-) -> np.ndarray:
+def _half_widths(free: FreeMotion, judged: _Judged, floors: np.ndarray) -> np.ndarray:
     """Half-widths of 95 % intervals of x, shape (6,): by rollouts, and by how far the two halves of the runs differ.
 
     What a surface leaves out moves point and height by more than scatter says, and otherwise in each half; their
     difference is two standard errors of the whole.
     """
-    x, reach = coordinates_of(judged.surface), reach_of(data.problem.tree)
-    sizes, errors = sizes_of_surface(reach), surface_errors(data, laws, body, judged.surface[BODY])
+    x, reach = coordinates_of(judged.surface), reach_of(free.data.problem.tree)
+    sizes, errors = sizes_of_surface(reach), surface_errors(free, judged.surface[BODY])
     here = errors(x)
     left = robust_scales(here, floors)  # the laws err to one side over a contact, as half a step of an encoder does
     half, unseen = half_widths(here, sensitivities_of(errors, sizes, possible_surface)(x, here), left, np.diag(sizes))

@@ -20,6 +20,7 @@ from lagnet.diagnosis.motion.surface.fit import (
     surface_errors,
     surface_of,
 )
+from lagnet.diagnosis.motion.surface.free_motion import FreeMotion, free_motion
 from lagnet.diagnosis.motion.surface.starts import reach_of
 from lagnet.rollout.surface import BODY, heights_of
 from lagnet.side_by_side import side_by_side
@@ -64,21 +65,18 @@ class Profile:
         return np.min(rows, axis=0), np.max(rows, axis=0)
 
 
-def profile_of(
-    data: ArmRuns, laws: np.ndarray, body: np.ndarray | None, surface: np.ndarray, floors: np.ndarray
-) -> Profile:
+def profile_of(free: FreeMotion, surface: np.ndarray, floors: np.ndarray) -> Profile:
     """The profile of a fitted surface.
 
     Args:
-        data: the runs that were fitted.
-        laws: shape (dof, len(LAW)).
-        body: shape (10,), carried by the last link, or None.
+        free: the runs that were fitted, as the laws predict them without a surface.
         surface: the fit, shape (len(SURFACE),).
         floors: shape (joints,), resolution of the errors [rad].
     """
-    x, reach = coordinates_of(surface), reach_of(data.problem.tree)
-    data = _lowest(data, surface)
-    errors, sizes = surface_errors(data, laws, body, surface[BODY]), np.delete(sizes_of_surface(reach), HEIGHT)
+    x, reach = coordinates_of(surface), reach_of(free.data.problem.tree)
+    data = _lowest(free.data, surface)
+    free = free_motion(data, free.laws, free.body)
+    errors, sizes = surface_errors(free, surface[BODY]), np.delete(sizes_of_surface(reach), HEIGHT)
     here = errors(x)
     scales, shift = robust_scales(here, floors), np.array([*upward(data, surface), 1.0, 0.0, 0.0])
     least = cost_of(here, scales)
