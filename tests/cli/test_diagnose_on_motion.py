@@ -94,15 +94,22 @@ def test_the_users_simulator_is_shown_before_and_after(diagnosed, tmp_path, engi
     assert "<h2>Your simulator, before and after</h2>" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("more", "said"),
-    [
-        (["--kp", "8", "--kd", "1"], "finds the gains of servos"),
-        (["--gains", "2,1"], "a replay runs every recording with the gains"),
-    ],
-)
-def test_gains_beside_a_replay_are_told(diagnosed, tmp_path, more, said, capsys):
+def test_gains_of_the_servo_beside_a_replay_are_refused(diagnosed, tmp_path, capsys):
     words = ["diagnose", str(diagnosed / "run_1.csv"), "--holdout", str(diagnosed / "run_3.csv")]
     words += ["--robot", str(diagnosed / "robot.xml"), "--replay", "mujoco", "--out", str(tmp_path / "out")]
-    assert main([*words, *more]) == 2
-    assert said in capsys.readouterr().err
+    assert main([*words, "--kp", "8", "--kd", "1"]) == 2
+    assert "finds the gains of servos" in capsys.readouterr().err
+
+
+def test_held_out_recordings_are_replayed_at_their_own_gains(diagnosed, tmp_path):
+    tree = kinematic_tree(load_description(diagnosed / "robot.xml"))
+    law = law_vector(kp=8.0, kd=0.4, viscous=0.2, coulomb=0.12, rotor=0.01, torque_limit=6.0)
+    read = np.genfromtxt(diagnosed / "run_3.csv", delimiter=",", names=True)
+    time, command = read["time"], read["command_0"][:, None]
+    q = roll_out_arm(tree, law[None], time, command, np.zeros(1), gain=np.full(command.shape, 0.4), step=0.001)
+    recording = Recording(time, ENCODER * np.round(q / ENCODER), None, ("servo",), command=command)
+    write_recording(recording, tmp_path / "weak.csv")
+    words = ["diagnose", str(diagnosed / "run_1.csv"), "--holdout", str(tmp_path / "weak.csv"), "--gains", "1,0.4"]
+    words += ["--robot", str(diagnosed / "robot.xml"), "--replay", "mujoco", "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    assert json.loads((tmp_path / "out" / "replay.json").read_text(encoding="utf-8"))["error_ratio"] < 0.2

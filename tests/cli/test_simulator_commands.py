@@ -14,7 +14,8 @@ from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
 from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.models.corrected.servo_driven import FoundCause, ServoDrivenModel
-from lagnet.models.corrected.servo_files import save_servo_driven
+from lagnet.models.corrected.servo_files import load_servo_driven, save_servo_driven
+from lagnet.models.files.loading import load_any
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm
@@ -169,6 +170,34 @@ def test_a_correction_on_motion_is_replayed_before_and_after(
     assert text["error_ratio"] < 0.1
     assert (tmp_path / "report.html").is_file()
     assert "commands alone stay within 0.05 rad" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("command", "engine"), [("replay", "mujoco"), ("replay", "pybullet"), ("export", "mujoco")])
+def test_recordings_are_replayed_each_at_its_own_gain(
+    servos: Path, tmp_path: Path, command: str, engine: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = load_servo_driven(servos / "corrected", load_any)
+    read = np.genfromtxt(servos / "run.csv", delimiter=",", names=True)
+    time, commands = read["time"], np.column_stack([read["command_0"], read["command_1"]])
+    q = model.rollout(commands, time, np.zeros(2), gain=0.5, step=1e-3)
+    write_recording(Recording(time, q, None, ARM.joints, command=commands), tmp_path / "weak.csv")
+    runs, folder = [str(tmp_path / "weak.csv"), str(servos / "run.csv")], str(servos / "corrected")
+    words = {
+        "replay": ["replay", *runs, "--robot", folder, "--engine", engine],
+        "export": ["export", folder, "--to", "mjcf", "--verify", runs[0], "--verify", runs[1]],
+    }[command]
+    assert main([*words, "--out", str(tmp_path / "out"), "--gains", "0.5,1"]) == DONE
+    name = {"replay": "replay.json", "export": "export.json"}[command]
+    text = json.loads((tmp_path / "out" / name).read_text(encoding="utf-8"))
+    assert text.get("verify", text)["error_ratio"] < 0.1
+    assert main([*words, "--out", str(tmp_path / "again"), "--gains", "0.5"]) == BAD_INPUT
+    assert "0.5 for 2 recordings" in capsys.readouterr().err
+
+
+def test_a_robot_without_servos_has_no_gains(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["replay", str(folder / "run.csv"), "--robot", str(folder / "arm.urdf"), "--out", str(tmp_path)]
+    assert main([*words, "--gains", "0.5"]) == BAD_INPUT
+    assert "no servos" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

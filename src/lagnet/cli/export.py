@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lagnet.cli.shared.options import Columns, ServoKd, ServoKp, TorqueConstant
+from lagnet.cli.shared.options import Columns, ServoGains, ServoKd, ServoKp, TorqueConstant
 from lagnet.errors import LagnetError
 from lagnet.percent import percent
 
@@ -30,6 +30,7 @@ def command(
     torque_constant: TorqueConstant = None,
     kp: ServoKp = None,
     kd: ServoKd = None,
+    gains: ServoGains = None,
 ) -> None:
     """Write a corrected model for a simulator, and say of every effect what it became."""
     from lagnet.cli.shared.console import numbers, say
@@ -52,7 +53,8 @@ def command(
     written = export_model(model, exporter, out)
     result = None
     if verify and exporter.engine is not None:
-        settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd))
+        of_servos = tuple(numbers(gains, "--gains")) if gains else ()
+        settings = ReplaySettings(engine=exporter.engine, servo=servo_of(kp, kd), gains=of_servos)
         constants = numbers(torque_constant, "--torque-constant") if torque_constant else None
         read = [
             load_recording(p, robot=model, columns=columns, torque_constant=constants, progress=while_reading())

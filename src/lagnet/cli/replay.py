@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from lagnet.cli.shared.options import Columns, Hold, ServoKd, ServoKp, TorqueConstant
+from lagnet.cli.shared.options import Columns, Hold, ServoGains, ServoKd, ServoKp, TorqueConstant
 from lagnet.cli.shared.robots import load_models
 from lagnet.errors import LagnetError
 
@@ -22,6 +22,7 @@ def command(
     torque_constant: TorqueConstant = None,
     kp: ServoKp = None,
     kd: ServoKd = None,
+    gains: ServoGains = None,
     tolerance: Annotated[float, typer.Option(help="Error at which a rollout has left the recording [rad].")] = 0.05,
     longest: Annotated[float, typer.Option(help="Replay so much of each recording [s].")] = 30.0,
 ) -> None:
@@ -42,7 +43,8 @@ def command(
         load_recording(p, robot=model, columns=columns, torque_constant=constants, progress=while_reading())
         for p in recordings
     ]
-    settings = ReplaySettings(engine=engine, tolerance=tolerance, longest=longest, servo=servo_of(kp, kd))
+    servo = {"servo": servo_of(kp, kd), "gains": tuple(numbers(gains, "--gains")) if gains else ()}
+    settings = ReplaySettings(engine=engine, tolerance=tolerance, longest=longest, **servo)
     result = before_and_after(model, read, settings)
     summary, table = write_replay(result, out)
     page = write_replay_report(summary, table, out / "report.html")

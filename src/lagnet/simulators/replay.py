@@ -58,6 +58,7 @@ class ReplaySettings:
         starts: free rollouts of recorded torques, spread over all recordings; 0: no horizon.
         longest: of each recording that is replayed [s].
         servo: gains of the position controller, for recordings of commands.
+        gains: of servo-driven models, the controllers' gains in each recording over the model's; none: as they are.
     """
 
     engine: str = "mujoco"
@@ -68,6 +69,7 @@ class ReplaySettings:
     starts: int = 20
     longest: float = 30.0
     servo: Servo | None = None
+    gains: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,9 +136,13 @@ def replay(model: Robot | CorrectedModel, recordings: list[Recording], settings:
     """Run recordings through a model in an engine.
 
     Raises:
-        LagnetError: an unknown engine, other joints, or commands without the servo's gains.
+        LagnetError: an unknown engine, other joints, commands without the servo's gains, or gains over those of a model
+            without servos.
         MissingExtraError: the engine is not installed.
     """
+    if settings.gains:
+        what = "the model has no servos whose gains others could be relative to"
+        raise LagnetError(what, where="--gains", next_step="give a folder of a diagnosis on motion, or --kp and --kd")
     with started(model, settings) as (arm, engine):
         return _replayed(arm, bare_robot(model), recordings, settings, settings.engine, _starter(engine))
 

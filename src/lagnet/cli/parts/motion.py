@@ -64,6 +64,8 @@ def diagnose_on_motion(
     seed: int,
 ) -> None:
     """Diagnoses, writes verdict, table, corrected model and report, and says what was found."""
+    from dataclasses import replace
+
     from lagnet.cli.parts.replayed import replay_held_out
     from lagnet.cli.shared.console import say
     from lagnet.diagnosis.motion.diagnose import diagnose_motion
@@ -72,9 +74,6 @@ def diagnose_on_motion(
     from lagnet.reports.motion_report import write_motion_report
     from lagnet.servos.servo_file import read_servo_file
 
-    if simulator and gains and any(g != 1.0 for g in gains):
-        what = "a replay runs every recording with the gains of the corrected servos"
-        raise LagnetError(what, where="--gains, --replay", next_step="leave one of them out")
     servo = None
     if actuator is not None:
         if not hasattr(robot, "armature"):
@@ -89,7 +88,9 @@ def diagnose_on_motion(
 
     write_together(out, fill, last="verdict.json")
     if simulator:
-        write_motion_report(result, out / "report.html", replay_held_out(result, simulator, out))
+        held = tuple(gains or ())[len(fit) if holdout else 0 :]
+        replayed = replay_held_out(result, replace(simulator, gains=held), out)
+        write_motion_report(result, out / "report.html", replayed)
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:

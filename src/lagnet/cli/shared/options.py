@@ -13,4 +13,8 @@ Hold = Annotated[str | None, typer.Option(help=HELP)]
 Columns = Annotated[Path | None, typer.Option(help="Mapping file (TOML) for foreign column names and units.")]
 TorqueConstant = Annotated[str | None, typer.Option(help="Comma-separated [N m/A], where motor current was recorded.")]
 ServoKp = Annotated[str | None, typer.Option(help="Comma-separated gains [N m/rad], for recorded commands.")]
+ServoGains = Annotated[
+    str | None,
+    typer.Option(help="After a diagnosis on motion: comma-separated gains of the recordings over the servos'."),
+]
 ServoKd = Annotated[str | None, typer.Option(help="Comma-separated gains [N m s/rad], for recorded commands.")]

@@ -13,6 +13,7 @@ from lagnet.rollout.whole_arm import roll_out_arm
 from lagnet.servos.parameters import (
     COULOMB,
     INDEX,
+    NO_LIMIT,
     OFFSET,
     QUADRATIC,
     ROTOR,
@@ -124,6 +125,13 @@ class ServoDrivenModel:
         gains = np.full(command.shape, gain)
         signals = {"ratio": ratio, "enabled": enabled, "gain": gains, "v0": v0, "surface": self.surface, "step": step}
         return roll_out_arm(self.tree, self.laws, time, command, np.asarray(q0, dtype=float), **signals)
+
+    def at_gain(self, gain: float) -> ServoDrivenModel:
+        """The model whose controllers have so many times the gains, their full duty kept."""
+        laws = self.laws.copy()
+        laws[:, [INDEX["kp"], INDEX["ki"]]] *= gain
+        laws[:, INDEX["full_error"]] = np.minimum(laws[:, INDEX["full_error"]] / gain, NO_LIMIT)
+        return replace(self, laws=laws)
 
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """Torque that the motors give [N m]: bodies, rotors and friction, shape (n, dof)."""
