@@ -53,6 +53,7 @@ class ServoEffect(ABC):
     with_it: ClassVar[tuple[str, ...]] = ()  # law parameters that are fitted again with it
     contains: ClassVar[tuple[str, ...]] = ()  # special cases of it: never named beside it
     beside: ClassVar[tuple[str, ...]] = ()  # it changes one of these, without which it is nothing
+    starts_alone: ClassVar[bool] = False  # True: it acts at the moments at which a joint starts from rest
     shown_by: ClassVar[str]
     confused_with: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str]

@@ -22,6 +22,7 @@ class StaticFriction(ReversingEffect):
     )
     frees: ClassVar = (("static",),)
     with_it: ClassVar = ("coulomb",)
+    starts_alone: ClassVar = True
     shown_by = "starts slowly from rest, again and again"
     confused_with: ClassVar = ("dead_band", "stribeck_friction", "coulomb_friction")
     source = "armstrong1994"

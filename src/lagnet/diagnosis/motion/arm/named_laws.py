@@ -18,7 +18,7 @@ from lagnet.diagnosis.motion.arm.profiles import profiled_ends
 from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out
 from lagnet.diagnosis.motion.arm.secants import settled_secants
 from lagnet.diagnosis.motion.arm.withdrawals import near_nominal, passing, refuted, undetermined, unexplained
-from lagnet.diagnosis.motion.joint.block_scores import advantage
+from lagnet.diagnosis.motion.joint.block_scores import advantage, beyond_scatter
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import without
 from lagnet.diagnosis.motion.joint.selection import (
@@ -121,7 +121,7 @@ def _needed_beside_yielding(
         had, limits = out[joint], out[joint].case.limits
         tried = Rejected(effect, NO_GAIN, 0.0, limits.gain)
         fewer = _refitted(problem, fitted, laws, out | {joint: _without(had, (tried,))})
-        gain = advantage(scores(fewer), scores(out))
+        gain = beyond_scatter(scores(fewer), scores(out))
         if (rejected := gains_too_little(effect, gain, limits)) is None:
             return gain[0], None, out
         law = had.law if rejected.rule == NOT_SIGNIFICANT else fewer[joint].law  # what gains stays in the correction

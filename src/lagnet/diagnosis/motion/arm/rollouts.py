@@ -87,10 +87,14 @@ class ArmRuns:
             out.append(_Driven(self.problem.series[0].time[rows], v0, *signals))
         return out
 
+    def seconds(self, run: Run) -> float:
+        """Duration of a run."""
+        time = self.problem.series[0].time
+        return float(time[run.last] - time[run.first])
+
     def scores(self, errors: Sequence[np.ndarray], floors: np.ndarray) -> np.ndarray:
         """½ log(mean e² + floor²) of every joint in every block of time, as in `block_scores`; smaller is better."""
-        time = self.problem.series[0].time
-        spans = [float(time[run.last] - time[run.first]) for run in self.runs]
+        spans = [self.seconds(run) for run in self.runs]
         length = float(np.clip(sum(spans) / BLOCKS, SHORTEST, LONGEST))
         counts, edges, out = [max(1, round(span / length)) for span in spans], [0], []
         for run in self.runs:

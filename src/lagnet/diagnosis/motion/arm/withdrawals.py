@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.arm_laws import with_named_laws
-from lagnet.diagnosis.motion.arm.rollouts import ArmRuns, runs_held_out, runs_to_fit
+from lagnet.diagnosis.motion.arm.rollouts import PIECE, ArmRuns, runs_held_out, runs_to_fit
 from lagnet.diagnosis.motion.joint.constancy import CHANGES_WITHIN, trends_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of
@@ -28,22 +28,35 @@ def unexplained(
 ) -> dict[int, tuple[Rejected, ...]]:
     """Names of joints at which all names together leave most of the error of given servos: then the cause is another.
 
-    The errors are those of all recordings, fitted or not, rolled out with all joints coupled: a joint that sticks once
-    where its rollout slips, by a hair, may lose a held-out recording and says nothing of the rest.
+    The errors are those of all recordings, fitted or not, rolled out with all joints coupled, but for the piece
+    of time in which names leave most: a joint that sticks once where its rollout slips says little of the rest.
     """
     runs, nominal = (*runs_to_fit(problem, fitted), *runs_held_out(problem, fitted)), laws.copy()
     for joint, d in found.items():
         nominal[joint] = d.case.law
     whole = ArmRuns(problem, runs, tuple(found))
     named = with_named_laws(laws, found)
-    before, after = ([float(np.sqrt(np.mean(e**2))) for e in whole.errors(x)] for x in (nominal, named))
+    before, after = whole.errors(nominal), whole.errors(named)
     out = {}
     for (joint, d), was, is_ in zip(found.items(), before, after, strict=True):
-        limits = d.case.limits
+        kept = _but_for_one_piece(whole, is_)
+        limits, (was, is_) = d.case.limits, (float(np.sqrt(np.mean(e[kept] ** 2))) for e in (was, is_))
         limit = max(limits.remainder * was, limits.unexplained * d.case.floor)
         if not d.case.base and d.named.effects and is_ > limit:
             out[joint] = tuple(Rejected(e, REMAINDER, is_, limit) for e in d.named.effects)
     return out
+
+
+def _but_for_one_piece(data: ArmRuns, errors: np.ndarray) -> np.ndarray:
+    """The samples outside of that piece of about `PIECE` seconds that holds most of Σ e²; all of a single piece."""
+    edges = np.cumsum([0, *(run.last - run.first + 1 for run in data.runs)])
+    pieces = [
+        p
+        for run, a, b in zip(data.runs, edges, edges[1:], strict=False)
+        for p in np.array_split(np.arange(a, b), max(1, round(data.seconds(run) / PIECE)))
+    ]
+    worst = int(np.argmax([np.sum(errors[p] ** 2) for p in pieces]))
+    return np.concatenate([p for i, p in enumerate(pieces) if i != worst or len(pieces) == 1])
 
 
 def near_nominal(found: JointDiagnosis) -> tuple[Rejected, ...]:

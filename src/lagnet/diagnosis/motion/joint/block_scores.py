@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import log
 
 import numpy as np
+from scipy.stats import rankdata
 
 from lagnet.diagnosis.motion.joint.fitting import JointData
 
@@ -32,12 +33,17 @@ def block_scores(data: JointData, law: np.ndarray, floor: float, length: float |
         floor: resolution of the error [rad].
         length: of a block [s]; None: that of these data alone.
     """
-    squares, out, time = data.errors(law) ** 2, [], data.series.time
+    return 0.5 * np.log(block_means(data, data.errors(law) ** 2, length) + floor**2)
+
+
+def block_means(data: JointData, values: np.ndarray, length: float | None = None) -> np.ndarray:
+    """Means of values of every sample, shape (n,), over the blocks of the data's windows, shape (n_blocks,)."""
+    out, time = [], data.series.time
     length = length or block_length(data)
     for first, last in zip(data.windows.first, data.windows.last, strict=True):
         count = max(1, round(float(time[last] - time[first]) / length))
-        out += [part.mean() for part in np.array_split(squares[first : last + 1], count)]
-    return 0.5 * np.log(np.array(out) + floor**2)
+        out += [part.mean() for part in np.array_split(values[first : last + 1], count)]
+    return np.array(out)
 
 
 def advantage(without: np.ndarray, with_it: np.ndarray) -> tuple[float, float]:
@@ -45,6 +51,18 @@ def advantage(without: np.ndarray, with_it: np.ndarray) -> tuple[float, float]:
     gains = without - with_it
     error = float(np.std(gains) / np.sqrt(len(gains))) + 1e-12
     return float(gains.mean()), float(gains.mean() / error)
+
+
+def beyond_scatter(without: np.ndarray, with_it: np.ndarray) -> tuple[float, float]:
+    """Mean gain of the block scores, and its size in standard errors: by `advantage` or by ranks, whichever is larger.
+
+    What shows in few blocks, as a break-away does, scatters for being large: k equal gains among blocks of none are
+    √k standard errors, however large they are. Ranks ask whether as large losses stand against them:
+    z = Σ sign(g) rank |g| / √Σ rank². Source: Wilcoxon 1945 (signed ranks).
+    """
+    gain, errors = advantage(without, with_it)
+    ranks = rankdata(np.abs(without - with_it))
+    return gain, max(errors, float(np.sign(without - with_it) @ ranks / np.sqrt(ranks @ ranks)))
 
 
 def log10_odds(errors: float) -> float:

@@ -20,7 +20,7 @@ from lagnet.servos.parameters import BIAS, FULL_ERROR, INDEX, KD, KP, VISCOUS
 
 FULL_DUTY = 0.98  # recorded duty below which the controller's torque was not limited
 LEAST_ERROR = 1e-4  # [rad] discretisation error of a rollout
-ENOUGH = 20.0  # [s] of motion for validation, below which every window is for validation once
+ENOUGH = 40.0  # [s] of motion for validation, below which every window is for validation once
 EVERY = 4  # one window in so many of the fitted recordings is for validation
 FIRST_FOLD = 2  # its windows are 2, 6, 10 ...
 LONG = 10.0  # [s] of a rollout to which the complete law is fitted

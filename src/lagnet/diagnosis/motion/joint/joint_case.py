@@ -19,7 +19,7 @@ class SelectionLimits:
         errors: least gain on held-out motion in standard errors over blocks.
         gain: least gain of the held-out score, 0.03 for errors 3 % smaller.
         tie: difference of two rivals in standard errors below which they are tied.
-        steps: least change of the predicted motion over `JointCase.floor`, half an encoder step.
+        steps: least change of the predicted motion over `JointCase.floor`, half an encoder step; twice it in one block.
         change: least relative change of a parameter from its nominal value.
         remainder: greatest error that names may leave, over that without them, where it is also
         unexplained: so many times `JointCase.floor`.

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lagnet.diagnosis.motion.joint.block_scores import advantage, log10_odds
+from lagnet.diagnosis.motion.joint.block_scores import advantage, beyond_scatter, log10_odds
 from lagnet.diagnosis.motion.joint.fitting import robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
@@ -55,7 +55,7 @@ def compare_rivals(case: JointCase, selected: Selection) -> tuple[Selection, tup
 def _against_rivals(case: JointCase, selected: Selection, effect: str) -> tuple[Comparison, Selection | None]:
     scale = robust_scale(selected.fitted.residual, case.floor)
     bare = without(case, selected, effect, scale)
-    gain, errors = advantage(bare.blocks, selected.blocks)
+    gain, errors = beyond_scatter(bare.blocks, selected.blocks)
     own = _freedom(effect)
     tied, best, better = [r for r in EQUIVALENT.get(effect, ()) if r not in selected.effects], None, None
     for rival in _rivals(case, selected, effect):
@@ -104,7 +104,7 @@ def _as_good(case: JointCase, one: Selection, other: Selection) -> bool:
 
 def _needless(case: JointCase, special: Selection, general: Selection) -> bool:
     """Whether held-out motion does not ask for the general law beyond its special case, as selection would."""
-    gain, errors = advantage(special.blocks, general.blocks)
+    gain, errors = beyond_scatter(special.blocks, general.blocks)
     return gain < case.limits.gain or errors < case.limits.errors
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.motion.joint.block_scores import advantage
-from lagnet.diagnosis.motion.joint.fitting import Fitted, robust_scale
+from lagnet.diagnosis.motion.joint.block_scores import beyond_scatter, block_means
+from lagnet.diagnosis.motion.joint.fitting import Fitted, JointData, robust_scale
 from lagnet.diagnosis.motion.joint.joint_case import JointCase, SelectionLimits
 from lagnet.diagnosis.motion.joint.refitting import Selection, refit, starts_with, without
 from lagnet.diagnosis.motion.joint.self_locking import HOLDS, SELF_LOCKING, friction_when_driven
@@ -109,7 +109,7 @@ def _best_addition(case: JointCase, selected: Selection, scale: float) -> tuple[
     fitted += first[SHORT_LIST:]
     rejected, best = [], None
     for name, found in fitted:
-        if rejection := gains_too_little(name, advantage(selected.blocks, found.blocks), case.limits):
+        if rejection := gains_too_little(name, beyond_scatter(selected.blocks, found.blocks), case.limits):
             rejected.append(rejection)
         elif best is None or _penalised_score(found) < _penalised_score(best):
             best = found
@@ -166,9 +166,8 @@ def _backward(
 
 def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -> tuple[float, Rejected | None]:
     """The gain of an effect on held-out motion, and the rule that rejects it, None if none does."""
-    gain = advantage(fewer.blocks, selected.blocks)
-    predicted = case.validation.predict(np.array([selected.law, fewer.law]))
-    difference = float(np.sqrt(np.mean((predicted[0] - predicted[1]) ** 2)))
+    gain = beyond_scatter(fewer.blocks, selected.blocks)
+    difference = difference_of(case.validation, selected.law, fewer.law, servo_effect(name).starts_alone)
     change = relative_change(case.law, selected.law, name)
     limits = case.limits
     if rejection := gains_too_little(name, gain, limits):
@@ -180,6 +179,17 @@ def _tested(case: JointCase, selected: Selection, fewer: Selection, name: str) -
         if value < limit:
             return gain[0], Rejected(name, rule, value, limit)
     return gain[0], refuted_by_load(case, selected.law, name)
+
+
+def difference_of(data: JointData, one: np.ndarray, other: np.ndarray, at_moments: bool) -> float:
+    """Root mean square of what parts the motion of two laws [rad]; at moments: half of that in one block, if more.
+
+    What acts at moments is a step of the encoder there, and little of one over all.
+    """
+    predicted = data.predict(np.array([one, other]))
+    squares = (predicted[0] - predicted[1]) ** 2
+    most = 0.25 * float(block_means(data, squares).max()) if at_moments else 0.0
+    return float(np.sqrt(max(float(np.mean(squares)), most)))
 
 
 def refuted_by_load(case: JointCase, law: np.ndarray, name: str) -> Rejected | None:
