@@ -35,7 +35,7 @@ def test_mujoco_moves_as_the_model(name: str) -> None:
     assert share_of(name, "mjcf", "mujoco") < NEAR
 
 
-@pytest.mark.parametrize("name", ["torque_offset", "stribeck_friction"])
+@pytest.mark.parametrize("name", ["torque_offset", "stribeck_friction", "surface_contact"])
 def test_pybullet_moves_as_the_model(name: str) -> None:
     assert share_of(name, "pybullet", "pybullet") < NEAR
 

@@ -14,6 +14,7 @@ import numpy as np
 from lagnet.errors import ModelError
 from lagnet.models.corrected.servo_driven import ServoDrivenModel
 from lagnet.rigid_body.robot import Robot
+from lagnet.rollout.surface import BODY, HEIGHT, PX
 from lagnet.servos.parameters import (
     BACK_EMF,
     COULOMB,
@@ -64,12 +65,14 @@ class ServoArm:
         laws: shape (dof, len(LAW)), whole laws at nominal loads (load_gain 1).
         surface: shape (len(SURFACE),), what the arm may rest on; None: nothing.
         voltage: nominal supply [V], 0 where none was recorded.
+        touch: shape (dof,), share of a surface's force that each joint feels at its nominal load.
     """
 
     arm: ArmPhysics
     laws: np.ndarray
     surface: np.ndarray | None
     voltage: float
+    touch: np.ndarray
 
     @property
     def torque_limit(self) -> np.ndarray:
@@ -122,7 +125,8 @@ def servo_arm(model: ServoDrivenModel) -> ServoArm:
             if law[STATIC] > 0.0
         ),
     )
-    limited = ServoArm(arm, laws, model.surface, model.voltage)
+    rigid = (laws[:, STIFFNESS] == 0.0) & (laws[:, GAP] == 0.0)  # others feel no surface
+    limited = ServoArm(arm, laws, model.surface, model.voltage, rigid / model.laws[:, LOAD_GAIN])
     drives = tuple(d.clipped(most) for d, most in zip(arm.drives, limited.torque_limit.tolist(), strict=True))
     return replace(limited, arm=replace(arm, drives=drives))
 
@@ -152,4 +156,12 @@ def settings_of_servos(arm: ServoArm) -> dict:
         "scripted_drive": [bool(x) for x in arm.scripted_drive],
         "scripted_friction": [bool(x) for x in arm.scripted_friction],
         "voltage": arm.voltage,
+        "surface": None if arm.surface is None else _surface(arm.surface, arm.touch),
     }
+
+
+def _surface(surface: np.ndarray, touch: np.ndarray) -> dict:
+    """What a joint's link touches, and where, as plain data."""
+    height, hardness, friction = map(float, surface[HEIGHT:])
+    out = {"joint": int(surface[BODY]), "point": surface[PX:HEIGHT].tolist(), "share": touch.tolist()}
+    return out | {"height": height, "hardness": hardness, "friction": friction}

@@ -1,7 +1,7 @@
 """Run an exported servo-driven arm in PyBullet by position commands.
 
 Needs NumPy and PyBullet alone: `python run_servo_pybullet.py` holds the arm where it is for a second; import `ServoArm`
-to command it. run_pybullet.py, friction_impulse.py and servo_law.py lie beside it.
+to command it. run_pybullet.py, friction_impulse.py, servo_law.py and surface_force.py lie beside it.
 """
 
 import sys
@@ -13,9 +13,11 @@ import pybullet
 try:
     from run_pybullet import CorrectedArm
     from servo_law import ServoLaw
+    from surface_force import SurfaceForce
 except ImportError:
     from lagnet.simulators.runtime.run_pybullet import CorrectedArm
     from lagnet.simulators.runtime.servo_law import ServoLaw
+    from lagnet.simulators.runtime.surface_force import SurfaceForce
 
 
 class ServoArm(CorrectedArm):
@@ -28,8 +30,19 @@ class ServoArm(CorrectedArm):
         self.offset, self.brake = np.array(self.law.p["offset"]), np.array(self.law.p["back_emf"])
         self.on_link, self.twist = self.law.p["encoder_side"] > 0.5, self.law.p["twist_damping"]
         self.solves, self.motor, self.bare = True, np.zeros(len(self.motors)), self.rotors
+        self.surface = self._surface(self.servo["surface"])
         for joint in self.motors:
             pybullet.changeDynamics(self.body, self.ids[joint], jointDamping=0.0, physicsClientId=self.world)
+
+    def _surface(self, given):
+        """The surface, with joints as places among all that move: behind a transmission it touches the link."""
+        if given is None:
+            return None
+        behind, share = dict(self.yielding), np.zeros(len(self.ids))
+        share[self.motors] = given["share"]
+        link = behind.get(given["joint"], self.motors[given["joint"]])
+        moved = {**given, "link": int(link), "share": share}
+        return SurfaceForce(moved, self.body, self.ids, self.world, self.settings["gravity"])
 
     def put(self, q, v):
         """Start at positions and speeds; a transmission that yields starts at rest under its load."""
@@ -58,7 +71,11 @@ class ServoArm(CorrectedArm):
         q, v = self.read()
         self.motor = self.law.torque(self.law.wanted(command, q), v)
         self.rotors = self.bare + self.dt * self._dampers()
-        super().step(self.motor + self.offset)
+        pushed = np.zeros(len(self.motors))
+        if self.surface is not None:
+            force, beside = self.surface.acting(self._state()[1], self.dt)
+            self.rotors, pushed = self.rotors + beside, force[self.motors]
+        super().step(self.motor + self.offset + pushed)
 
     def _dampers(self):
         """Dampers, which are taken at the end of a step, as a matrix beside the rotors."""

@@ -17,7 +17,7 @@ from lagnet.simulators.xml_text import write_xml
 SCRIPT = "run_servo_pybullet.py"
 LAW = exact(f"the controller in {SCRIPT}")
 FRICTION = exact(f"friction that {SCRIPT} solves at every step")
-MODULES = (SCRIPT, "run_pybullet.py", "friction_impulse.py", "servo_law.py")
+MODULES = (SCRIPT, "run_pybullet.py", "friction_impulse.py", "servo_law.py", "surface_force.py")
 
 
 @final
@@ -41,6 +41,7 @@ class PyBulletServoExporter(ServoExporter):
         "duty_saturation": LAW,
         "torque_saturation": LAW,
         "torque_offset": exact(f"a constant torque in {SCRIPT}"),
+        "surface_contact": exact(f"a force at the touching point in {SCRIPT}, taken at the end of each step"),
         "load_error": exact("gains, friction, rotor and springs of the joint divided by g"),
     }
 
