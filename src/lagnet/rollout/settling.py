@@ -3,7 +3,9 @@
 It is the minimum of ½ v'ᵀ A v' − nᵀ v' + h Σ Fᵢ |v'ᵢ|. Once it is known which joints rest and to which side the others
 move, v' follows from one linear equation. A sweep of projected Gauss–Seidel guesses that, the equation is solved, and
 the next sweep, which then moves nothing, shows that the guess was right; else it makes a better one. Sweeps alone
-converge slowly where rotors are small beside the coupling of the bodies. Sources: Moreau 1988; Stewart & Trinkle 1996.
+converge slowly where rotors are small beside the coupling of the bodies. What a yielding transmission joins is linear
+as well, until it touches or lets go; where an impact has no solution the last sweep stands.
+Sources: Moreau 1988; Stewart & Trinkle 1996.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from lagnet.rollout.transmission import joined_speeds
 from lagnet.servos.friction import dry_friction, falls_with_speed
 
 SWEEPS = 50  # at most; two suffice where the first guess is right
+SOLUTIONS = 8  # of linear equations at most
+NEAR = 1e-6  # of a push, over which the speed behind a yielding transmission is a line
 STILL = 1e-12  # [rad/s] change of a sweep below which it has converged
 
 
@@ -26,31 +30,30 @@ def settle(parameters, a, free, load, motor, push, h, v, motors, contact, work):
     motors: of yielding transmissions, with their speeds and sides of contact, written in place; contact: see `pressed`;
     work: of `settling_space`.
     """
-    old, before, dry, equation, sides, solved = work
-    rigid = True
+    old, before, dry, lines, equation, sides, solved = work
     for j in range(v.size):
         old[j], before[j], solved[j] = v[j], motors[3][j], np.nan
-        rigid = rigid and not motors[0][j]
         for side in range(2):
             dry[j, side] = h * dry_friction(parameters[j], v[j], load[j], motor[j], 2.0 * side - 1.0)
-    for _ in range(SWEEPS):
-        if _sweep(parameters, a, free, load, motor, push, h, v, motors, contact, (old, before, dry)) < STILL:
+    for n in range(SWEEPS):
+        if _sweep(parameters, a, free, load, motor, push, h, v, motors, contact, (old, before, dry, lines)) < STILL:
             break
-        if rigid:
-            _solve(a, free, dry, h, v, contact, (equation, sides, solved))
+        if n < SOLUTIONS:
+            _solve(a, free, dry, h, v, motors[0], contact, (lines, equation, sides, solved))
 
 
 def settling_space(dof: int) -> tuple[np.ndarray, ...]:
     """Arrays that `settle` writes in, made once for a rollout."""
     speeds = np.empty(dof), np.empty(dof)
-    return *speeds, np.empty((dof, 2)), np.empty((dof, dof + 1)), np.empty(dof + 1), np.empty(dof + 1)
+    equation = np.empty((dof, dof + 1))
+    return *speeds, np.empty((dof, 2)), np.zeros((dof, 2)), equation, np.empty(dof + 1), np.empty(dof + 1)
 
 
 @njit(cache=True, error_model="numpy")
 def _sweep(parameters, a, free, load, motor, push, h, v, motors, contact, begun):  # pragma: no cover - compiled
     """The speed of one joint after the other, the others held; the greatest change."""
     apart, rows, twist, w, sides = motors
-    old, before, dry = begun
+    old, before, dry, lines = begun
     moved = 0.0
     for j in range(v.size):
         rest, alone = free[j], h * push[j]
@@ -60,9 +63,12 @@ def _sweep(parameters, a, free, load, motor, push, h, v, motors, contact, begun)
                 alone -= a[j, m] * (v[m] - old[m])
         if apart[j]:
             own = (rows[j, 0], rows[j, 1], rows[j, 2], rows[j, 3])
-            w[j], new, sides[j] = joined_speeds(
-                parameters[j], own, a[j, j], rest, twist[j], before[j], old[j], load[j], motor[j], h
-            )
+            given = (twist[j], before[j], old[j], load[j], motor[j])
+            ahead = rest + NEAR * (abs(rest) + NEAR)
+            _, beyond, _ = joined_speeds(parameters[j], own, a[j, j], ahead, *given, h)
+            w[j], new, sides[j] = joined_speeds(parameters[j], own, a[j, j], rest, *given, h)
+            lines[j, 0] = (beyond - new) / (ahead - rest)
+            lines[j, 1] = new - lines[j, 0] * rest
         else:
             new, side, alone = _rigid((dry[j, 0], dry[j, 1]), rest, alone, a[j, j], v, j, contact, h)
             passes = falls_with_speed(parameters[j]) and old[j] * new < 0.0
@@ -92,24 +98,32 @@ def _slowed(dry, rest, inertia):  # pragma: no cover - compiled
 
 
 @njit(cache=True, error_model="numpy")
-def _solve(a, free, dry, h, v, contact, work):  # pragma: no cover - compiled
+def _solve(a, free, dry, h, v, apart, contact, work):  # pragma: no cover - compiled
     """The least energy of the joints that move, to the sides that v has them move to; one that comes to rest stays.
 
     On the way to the solution of their linear equation v stops where the first of them rests, and goes on without it.
+    A link behind a yielding transmission moves on the line that its speed follows near its push of now.
     The last side is a surface's: the impulse per way [N s/m] where v ends below it.
     """
-    equation, sides, solved = work
+    lines, equation, sides, solved = work
     slopes, below, hardness = contact
     for j in range(v.size):
         sides[j] = 1.0 if v[j] > 0.0 else (-1.0 if v[j] < 0.0 else 0.0)
+        if apart[j]:
+            sides[j] = 0.0
         below += 0.5 * h * slopes[j] * v[j]
     sides[v.size] = h * hardness if below < 0.0 else 0.0
     same = True
     for j in range(v.size + 1):
-        same = same and sides[j] == solved[j]
+        same = same and sides[j] == solved[j] and not (j < v.size and apart[j])
         solved[j] = sides[j]
     for _ in range(0 if same else v.size):
         _write(equation, a, free, dry, h, sides, contact)
+        for j in range(v.size):
+            if apart[j]:  # v'_j = slope · push + speed without it
+                for m in range(v.size):
+                    equation[j, m] = lines[j, 0] * a[j, m] if m != j else 1.0
+                equation[j, v.size] = lines[j, 1] + lines[j, 0] * free[j]
         _eliminate(equation)
         way, first = 1.0, -1
         for j in range(v.size):
