@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from lagnet.diagnosis.motion.arm.arm_laws import with_named_laws
+from lagnet.diagnosis.motion.arm.constancy import CHANGES_WITHIN, trends_of
 from lagnet.diagnosis.motion.arm.rollouts import PIECE, ArmRuns, runs_held_out, runs_to_fit
-from lagnet.diagnosis.motion.joint.constancy import CHANGES_WITHIN, trends_of
 from lagnet.diagnosis.motion.joint.joint_diagnosis import JointDiagnosis
 from lagnet.diagnosis.motion.joint.refitting import groups_of
 from lagnet.diagnosis.motion.joint.selection import (

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lagnet.diagnosis.motion.arm.constancy import Trend, trends_of
 from lagnet.diagnosis.motion.joint.cases import joint_case
-from lagnet.diagnosis.motion.joint.constancy import Trend, trends_of
 from lagnet.diagnosis.motion.joint.joint_case import SelectionLimits
 from lagnet.diagnosis.motion.problem import pose_motion_problem
 from lagnet.recordings.recording import Recording
