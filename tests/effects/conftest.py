@@ -116,7 +116,7 @@ def shapes_of() -> Callable[[Effect, Motion, int | None], tuple[Motion, list[dic
             )
             shapes = list(effect.shapes(motion, joint))
         if not shapes and joint is not None:
-            wave = np.sin(60.0 * motion.q[:, joint])
+            wave = np.sin(60.0 * motion.q)
             shapes = list(effect.proposals(motion, joint, wave))
         return motion, shapes
 

@@ -96,11 +96,12 @@ def elasticity(sweep, joint, values):
 
 def coupled(sweep, joint, values):
     m, before = sweep.motion, joint - 1
-    speed, rate = m.v[:, joint] - m.v[:, before], m.a[:, joint] - m.a[:, before]
-    blur = np.sqrt(m.slow[joint] ** 2 + m.slow[before] ** 2)
+    c = values["ratio"]
+    speed, rate = m.v[:, joint] + c * m.v[:, before], m.a[:, joint] + c * m.a[:, before]
+    blur = np.sqrt(m.slow[joint] ** 2 + (c * m.slow[before]) ** 2)
     drag_ = values["Fv"] * speed + values["Fc"] * np.tanh(speed / blur) + values["Ia"] * rate
     out = np.zeros_like(m.q)
-    out[:, joint], out[:, before] = drag_, -drag_  # the power of the drag is drag · (v_j − v_(j−1))
+    out[:, joint], out[:, before] = drag_, c * drag_  # the power of the drag is drag · (v_j + c v_(j−1))
     return out
 
 
@@ -156,7 +157,7 @@ LAWS: dict[str, tuple[dict[str, float], Law, float]] = {
     "encoder_offset": ({"delta": 0.07}, encoder, ORACLE),
     "time_delay": ({"T": 0.013}, delay, SPLINE),
     "joint_elasticity": ({"K": 4000.0}, elasticity, DIFFERENCES),
-    "coupled_transmission": ({"Fv": 1.0, "Fc": 2.0, "Ia": 0.3, "sense": -1.0}, coupled, ORACLE),
+    "coupled_transmission": ({"Fv": 1.0, "Fc": 2.0, "Ia": 0.3, "ratio": -1.7}, coupled, ORACLE),
     "presliding_hysteresis": ({"sigma0": 60.0, "Fc": 2.0}, dahl, DIFFERENCES),
     "saturation": (
         {"tau_max": 3.0},

@@ -51,6 +51,15 @@ def rewrite(folder, **changes) -> None:
     (folder / FILE).write_text(json.dumps(text | changes))
 
 
+def test_a_coupled_motor_of_an_older_folder_keeps_its_ratio(tmp_path) -> None:
+    values = {"Fv": 1.0, "Fc": 0.5, "Ia": 0.1, "ratio": -1.0}
+    effect = NamedEffect("coupled_transmission", 1, values)
+    model = CorrectedModel(random_arm(3, seed=5, kinds=("revolute",)), (effect,), np.full(3, 0.01))
+    folder = save_corrected(model, tmp_path / "corrected")
+    (folder / FILE).write_text((folder / FILE).read_text().replace('"ratio"', '"sense"'))
+    assert load_any(folder).effects == (effect,)
+
+
 def test_a_model_read_back_is_the_same_model(model, folder) -> None:
     back = load_any(folder)
     assert back.effects == model.effects

@@ -81,7 +81,7 @@ def study(case: Halves) -> dict[str, Any]:
     for key in sorted(found[0].keys() & found[1].keys()):
         (a, *of_a), (b, *of_b) = found[0][key], found[1][key]
         if of_a[0] == of_a[1] and of_b[0] == of_b[1]:
-            continue  # a choice, such as the sense of a coupling, has no interval
+            continue  # a choice has no interval
         rows.append(
             {
                 "parameter": list(key),

@@ -95,7 +95,7 @@ class Effect(ABC):
         """Shapes that a residual suggests, for laws whose shapes are too many to try; none by default.
 
         Args:
-            residual: shape (n,) of the joint, on the samples of the motion.
+            residual: shape (n, dof), on the samples of the motion.
         """
         return ()
 

@@ -42,7 +42,7 @@ def settings_of(arm: ArmPhysics) -> dict[str, Any]:
         **{key: [_finite(x) for x in value] for key, value in vectors.items()},
         "stribeck": [[t.joint, t.extra, t.speed] for t in arm.stribeck],
         "ripples": [[t.joint, t.order, t.amplitude, t.phase] for t in arm.ripples],
-        "couplings": [[t.joint, t.viscous, t.dry, t.rotor, t.sense] for t in arm.couplings],
+        "couplings": [[t.joint, t.viscous, t.dry, t.rotor, t.ratio] for t in arm.couplings],
         "bristles": [[t.joint, t.stiffness, t.friction] for t in arm.bristles],
         "drives": [
             {

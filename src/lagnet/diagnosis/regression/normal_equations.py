@@ -88,7 +88,7 @@ def bounded_step(gram: np.ndarray, moment: np.ndarray, lower: np.ndarray, upper:
 
 
 def _scale(power: np.ndarray) -> np.ndarray:
-    scale = np.zeros(len(power))  # a coordinate without any say, such as a sense of rotation, stays where it is
+    scale = np.zeros(len(power))  # a coordinate without any say stays where it is
     felt = power > max(NOTHING * float(np.max(power, initial=0.0)), 1e-200)
     scale[felt] = 1.0 / np.sqrt(power[felt])
     return scale

@@ -23,9 +23,10 @@ def proposals_from_residual(problem: Problem, equations: NormalEquations, found:
     widths: list[int] = []
     for effect in CATALOGUE.values():
         for joint in () if effect.whole_arm else range(problem.n_dof):
-            for shape in effect.proposals(motion, joint, residual[:, joint]):
+            for shape in effect.proposals(motion, joint, residual):
                 columns = effect.columns(motion, joint, shape)
-                if _worthwhile(columns, residual[:, joint], problem.scale[joint], problem.limits):
+                own = columns[:, joint] if effect.reaches_all else columns
+                if _worthwhile(own, residual[:, joint], problem.scale[joint], problem.limits):
                     fresh.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
                     widths.append(columns.shape[-1])
     if not fresh:

@@ -4,29 +4,35 @@ from collections.abc import Mapping, Sequence
 from typing import final
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_both_directions
 from lagnet.effects.motion import Motion
 
-SENSES = (1.0, -1.0)
+PLAIN = (1.0, -1.0)  # ratios of most wrists, that are tried without a residual
+STEEPEST = 10.0  # either motor or joint turns so many times as fast
+STEPS = 24  # ratios of one sign that a residual is asked for
+BETTER = 0.1  # of what plain ratios leave at both joints, that another one must explain to be proposed
+FALLING = 0.3  # of its dry friction [s/rad] by which noise makes viscous friction fall
+NO_ROTOR = 0.1  # of its friction [s²/rad] by which noise makes a rotor negative
 
 
 @final
 class CoupledTransmission(Effect):
-    """The motor of a wrist joint also turns with the joint before it: with w = v_j ± v_(j−1), both feel its drag.
+    """The motor of a wrist joint also turns with the joint before it: with w = v_j + c v_(j−1), both feel its drag.
 
-    Power balance gives the share of each joint: r_j = Fv w + Fc s(w) + Ia dw/dt, and r_(j−1) = ± r_j.
+    Power balance gives the share of each joint: r_j = Fv w + Fc s(w) + Ia dw/dt, and r_(j−1) = c r_j.
     """
 
     name = "coupled_transmission"
     title = "Coupled transmission"
-    formula = "Fv w + Fc s(w) + Ia dw/dt on both joints, w = v_j ± v_(j−1)"
+    formula = "Fv w + Fc s(w) + Ia dw/dt, and c times that on the joint before, w = v_j + c v_(j−1)"
     parameters = (
         Parameter("Fv", "F_v", "N m s/rad", "viscous friction of the coupled motor", lower=0.0),
         Parameter("Fc", "F_c", "N m", "dry friction of the coupled motor", lower=0.0),
         Parameter("Ia", "I_a", "kg m²", "rotor inertia of the coupled motor", lower=0.0),
-        Parameter("sense", "c", "–", "+1 where the motor turns with the sum of the speeds, −1 with the difference"),
+        Parameter("ratio", "c", "–", "what the motor turns with the joint before, over its own", -STEEPEST, STEEPEST),
     )
     reaches_all = True
     absent = (("Fv", 0.0), ("Fc", 0.0), ("Ia", 0.0))
@@ -35,15 +41,28 @@ class CoupledTransmission(Effect):
     source = "gautier1990"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
-        return tuple({"sense": sense} for sense in SENSES)
+        return tuple({"ratio": ratio} for ratio in PLAIN)
+
+    def proposals(self, motion: Motion, joint: int, residual: np.ndarray) -> Sequence[Values]:
+        if not self.exists_at(joint) or self.excitation(motion, joint):
+            return ()
+        left = _Left(self, motion, joint, residual)
+        sizes = np.geomspace(1.0 / STEEPEST, STEEPEST, STEPS)
+        ratios = np.concatenate([-sizes[::-1], sizes])
+        found = [left(ratio) for ratio in ratios]
+        best = int(np.argmin(found))
+        ends = sorted((ratios[best] * sizes[0] / sizes[1], ratios[best] * sizes[1] / sizes[0]))
+        finest = minimize_scalar(left, bounds=ends, method="bounded")
+        enough = finest.fun < (1.0 - BETTER) * min(left(ratio) for ratio in PLAIN)
+        return ({"ratio": float(finest.x)},) if enough else ()
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        sense = shape["sense"]
-        speed = motion.v[:, joint] + sense * motion.v[:, joint - 1]
-        blur = float(np.hypot(motion.slow[joint], motion.slow[joint - 1]))
-        own = np.column_stack([speed, np.tanh(speed / blur), motion.a[:, joint] + sense * motion.a[:, joint - 1]])
+        ratio = shape["ratio"]
+        speed = motion.v[:, joint] + ratio * motion.v[:, joint - 1]
+        blur = float(np.hypot(motion.slow[joint], ratio * motion.slow[joint - 1]))
+        own = np.column_stack([speed, np.tanh(speed / blur), motion.a[:, joint] + ratio * motion.a[:, joint - 1]])
         out = np.zeros((motion.time.size, motion.n_dof, 3))
-        out[:, joint], out[:, joint - 1] = own, sense * own
+        out[:, joint], out[:, joint - 1] = own, ratio * own
         return out
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
@@ -51,20 +70,41 @@ class CoupledTransmission(Effect):
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         viscous, dry, rotor = map(float, coefficients)
-        return {"Fv": viscous, "Fc": dry, "Ia": rotor, "sense": float(shape["sense"])}
-
-    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        return np.array([0.0, 0.0, 0.0, -1.0]), np.array([np.inf, np.inf, np.inf, 1.0])
+        return {"Fv": viscous, "Fc": dry, "Ia": rotor, "ratio": float(shape["ratio"])}
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        sense = {"sense": 1.0 if values["sense"] >= 0.0 else -1.0}
-        return self.columns(motion, joint, sense) @ np.array([values["Fv"], values["Fc"], values["Ia"]])
+        return self.columns(motion, joint, values) @ np.array([values["Fv"], values["Fc"], values["Ia"]])
 
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
-        return bool(np.all(coefficients[:2] > 0.0) and coefficients[2] > -0.1 * abs(coefficients[0]))
+        viscous, dry, rotor = coefficients
+        return bool(dry > 0.0 and viscous > -FALLING * dry and rotor > -NO_ROTOR * (abs(viscous) + dry))
 
     def exists_at(self, joint: int | None) -> bool:
         return joint != 0  # no joint is before the first
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_both_directions(motion, joint) or needs_both_directions(motion, joint - 1)
+
+
+def _own_terms(motion: Motion, joint: int) -> np.ndarray:
+    v = motion.v[:, joint]
+    return np.column_stack([v, np.tanh(v / motion.slow[joint]), motion.a[:, joint], np.ones(v.size)])
+
+
+class _Left:
+    """Share of the residual of two joints that a ratio leaves beside each joint's own friction, rotor and offset."""
+
+    def __init__(self, effect: CoupledTransmission, motion: Motion, joint: int, residual: np.ndarray):
+        self.effect, self.motion, self.pair = effect, motion, (joint, joint - 1)
+        self.own = [np.linalg.qr(_own_terms(motion, j))[0] for j in self.pair]
+        self.sizes = [max(float(np.sqrt(np.mean(residual[:, j] ** 2))), 1e-300) for j in self.pair]
+        self.rest = np.concatenate([self._beside(k, residual[:, j]) for k, j in enumerate(self.pair)])
+
+    def _beside(self, k: int, x: np.ndarray) -> np.ndarray:
+        return (x - self.own[k] @ (self.own[k].T @ x)) / self.sizes[k]
+
+    def __call__(self, ratio: float) -> float:
+        both = self.effect.columns(self.motion, self.pair[0], {"ratio": float(ratio)})
+        columns = np.concatenate([self._beside(k, both[:, j]) for k, j in enumerate(self.pair)])
+        fitted, *_ = np.linalg.lstsq(columns, self.rest, rcond=1e-10)
+        return float(np.mean((self.rest - columns @ fitted) ** 2))

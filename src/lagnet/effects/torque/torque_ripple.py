@@ -49,7 +49,8 @@ class TorqueRipple(Effect):
         if highest <= lowest:
             return ()
         orders = np.arange(lowest, highest, RESOLUTION * 2.0 * np.pi / reach)
-        power = _periodogram(q, residual - residual.mean(), orders)
+        own = residual[:, joint]
+        power = _periodogram(q, own - own.mean(), orders)
         found = []
         for _ in range(TOLD):
             best = int(np.argmax(power))

@@ -54,7 +54,7 @@ class CouplingTerm:
     viscous: float
     dry: float
     rotor: float
-    sense: float
+    ratio: float
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class ArmPhysics:
     def coupling_row(self, term: CouplingTerm) -> np.ndarray:
         """Speed of a coupled motor per unit of each joint's speed, shape (dof,)."""
         row = np.zeros(self.n_dof)
-        row[term.joint], row[term.joint - 1] = 1.0, term.sense
+        row[term.joint], row[term.joint - 1] = 1.0, term.ratio
         return row
 
 
@@ -260,7 +260,7 @@ def _ripple(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
 
 
 def _coupling(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
-    term = CouplingTerm(joint, v["Fv"], v["Fc"], v["Ia"], 1.0 if v["sense"] >= 0.0 else -1.0)
+    term = CouplingTerm(joint, v["Fv"], v["Fc"], v["Ia"], v["ratio"])
     return replace(arm, couplings=(*arm.couplings, term))
 
 

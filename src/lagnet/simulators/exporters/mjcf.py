@@ -186,7 +186,7 @@ def _tendons(root: Element, arm: ArmPhysics, tree: tuple[TreeBody, ...]) -> None
         if term.dry:
             fixed.attrib.update(solreffriction=SOLREF, solimpfriction=SOLIMP)
         SubElement(fixed, "joint", joint=tree[term.joint].joint, coef="1")
-        SubElement(fixed, "joint", joint=tree[term.joint - 1].joint, coef=number(term.sense))
+        SubElement(fixed, "joint", joint=tree[term.joint - 1].joint, coef=number(term.ratio))
 
 
 def _actuators(root: Element, arm: ArmPhysics, tree: tuple[TreeBody, ...]) -> None:

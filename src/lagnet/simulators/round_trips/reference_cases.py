@@ -47,7 +47,7 @@ CASES: Mapping[str, Mapping[str, float]] = {
     "backlash": {"h": 0.01},
     "presliding_hysteresis": {"sigma0": 25.0, "Fc": 0.6},
     "saturation": {"tau_max": 2.0},
-    "coupled_transmission": {"Fv": 0.4, "Fc": 0.3, "Ia": 0.05, "sense": 1.0},
+    "coupled_transmission": {"Fv": 0.4, "Fc": 0.3, "Ia": 0.05, "ratio": 1.0},
 }
 
 

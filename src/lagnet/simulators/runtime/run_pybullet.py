@@ -63,9 +63,9 @@ class CorrectedArm:
         self.rotors = np.zeros((len(self.ids), len(self.ids)))
         self.rotors[self.motors, self.motors] = np.array(s["rotor"]) - np.array(s["motor_body"])
         self.rows = []
-        for joint, _viscous, dry, rotor, sense in s["couplings"]:
+        for joint, _viscous, dry, rotor, ratio in s["couplings"]:
             row = np.zeros(len(self.ids))
-            row[self.motors[joint]], row[self.motors[joint - 1]] = 1.0, sense
+            row[self.motors[joint]], row[self.motors[joint - 1]] = 1.0, ratio
             self.rotors += rotor * np.outer(row, row)
             self.rows.append((row, dry))
         self.gaps = [(link, s["half_gap"][j]) for j, link in self.yielding if s["half_gap"][j]]
@@ -160,10 +160,10 @@ class CorrectedArm:
             out = out + np.array(s["viscous"]) * v
         for joint, order, amplitude, phase in s["ripples"]:
             out[joint] += amplitude * np.sin(order * q[joint] + phase)
-        for joint, viscous, _dry, _rotor, sense in s["couplings"]:
-            drag = viscous * (v[joint] + sense * v[joint - 1])
+        for joint, viscous, _dry, _rotor, ratio in s["couplings"]:
+            drag = viscous * (v[joint] + ratio * v[joint - 1])
             out[joint] += drag
-            out[joint - 1] += sense * drag
+            out[joint - 1] += ratio * drag
         for bend, (joint, stiffness, _friction) in zip(self.bend, s["bristles"], strict=True):
             out[joint] += stiffness * bend
         return out
