@@ -24,7 +24,7 @@ def explain_effect(
     """Effect, joint, parameters with nominal values, and the change of the error of held-out rollouts."""
     law = servo_effect(name)
     shown = ", ".join(
-        f"{p.name} = {p.value:.4g} {p.unit}".rstrip()
+        f"{p.name} = {p.value:.4g} {p.unit}".rstrip(" –")
         + (f" (nominal {nominal[p.name]:.4g})" if nominal.get(p.name) else "")
         for p in parameters
     )
