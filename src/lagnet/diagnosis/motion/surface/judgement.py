@@ -7,7 +7,7 @@ and the recordings that are held out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,7 +30,7 @@ from lagnet.diagnosis.motion.surface.fit import (
 )
 from lagnet.diagnosis.motion.surface.found import SurfaceFound
 from lagnet.diagnosis.motion.surface.free_motion import FreeMotion, free_motion
-from lagnet.diagnosis.motion.surface.profile import Profile, profile_of
+from lagnet.diagnosis.motion.surface.profile import HEIGHT, RISE, Profile, profile_of
 from lagnet.diagnosis.motion.surface.starts import lowest_runs, reach_of, starts_of_surface
 from lagnet.rollout.surface import BODY, heights_of
 from lagnet.servos.parameters import GAP, STIFFNESS
@@ -83,14 +83,11 @@ def judge_surface(
     judged = [j for j in judged if j.evidence.helps(limits)]
     if not judged:
         return None
-    best = min(judged, key=lambda j: j.evidence.left)
-    profile = profile_of(free, best.surface, floors)
-    finer = surface_of(best.surface[BODY], profile.best)
-    errors = [held.errors(s) for s in (best.surface, finer)]
-    scales = robust_scales(errors[0], floors)
-    if cost_of(errors[1], scales) <= cost_of(errors[0], scales):
-        best = replace(best, surface=finer)
-    return _found(free, best, profile, floors, limits, found)
+    most = (1.0 + RISE) * min(j.evidence.left for j in judged)
+    walked = [_walked(free, held, j, floors) for j in judged if j.evidence.left <= most]
+    best = _least([j.surface for j, _ in walked], held, floors)
+    profiles = [profile for _, profile in walked]
+    return _found(free, walked[best][0], [profiles.pop(best), *profiles], floors, limits, found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +97,21 @@ class _Judged:
     surface: np.ndarray
     evidence: Touched
     halves: list[np.ndarray]
+
+
+def _walked(free: FreeMotion, held: FreeMotion, judged: _Judged, floors: np.ndarray) -> tuple[_Judged, Profile]:
+    """A surface at the best of its heights, where held-out motion is predicted as well there, and the profile."""
+    profile = profile_of(free, judged.surface, floors)
+    finer = surface_of(judged.surface[BODY], profile.best)
+    least = _least([finer, judged.surface], held, floors)
+    return replace(judged, surface=(finer, judged.surface)[least]), profile
+
+
+def _least(surfaces: Sequence[np.ndarray], held: FreeMotion, floors: np.ndarray) -> int:
+    """Place of the surface that predicts held-out motion best, the first of equals."""
+    errors = [held.errors(s) for s in surfaces]
+    scales = robust_scales(errors[-1], floors)
+    return int(np.argmin([cost_of(e, scales) for e in errors]))
 
 
 def _may_touch(free: FreeMotion, floors: np.ndarray, limits: SelectionLimits) -> bool:
@@ -144,17 +156,19 @@ def _halves(data: ArmRuns, surface: np.ndarray) -> tuple[ArmRuns, ArmRuns]:
 def _found(
     free: FreeMotion,
     judged: _Judged,
-    profile: Profile,
+    profiles: Sequence[Profile],
     floors: np.ndarray,
     limits: SelectionLimits,
     found: Mapping[int, JointDiagnosis],
 ) -> SurfaceFound:
-    """The surface with its intervals."""
+    """The surface with its intervals; profiles: its own, then those of other bodies that predict about as well."""
     data, surface, evidence = free.data, judged.surface, judged.evidence
     x = coordinates_of(surface)
     half = _half_widths(free, judged, floors)
-    ends_of = profile.ends()
-    lower, upper = np.minimum(x - half, ends_of[0]), np.maximum(x + half, ends_of[1])
+    (low, high), *others = (profile.ends() for profile in profiles)
+    lower, upper = np.minimum(x - half, low), np.maximum(x + half, high)
+    for low, high in others:  # their points are in another frame
+        lower[HEIGHT], upper[HEIGHT] = min(lower[HEIGHT], low[HEIGHT]), max(upper[HEIGHT], high[HEIGHT])
     values: dict[str, float] = dict(zip(NAMES, map(float, surface[1:]), strict=True))
     ends: dict[str, tuple[float, float]] = {
         n: (float(a), float(b)) for n, a, b in zip(NAMES, lower, upper, strict=True)
