@@ -21,6 +21,7 @@ name = "gravity_tilt"
 theta_1 = 0.02
 theta_2 = -0.01
 """
+COUPLED = '[[effect]]\nname = "coupled_transmission"\njoint = "elbow_joint"\nFv = 2\nFc = 1\nIa = 0\n'
 VISCOUS = '[[effect]]\nname = "viscous_friction"\n'
 
 
@@ -30,6 +31,16 @@ def test_a_good_file_is_read(ur5: Robot, tmp_path: Path) -> None:
     viscous, tilt = read_effects(path, ur5)
     assert (viscous.effect.name, viscous.joint, viscous.values) == ("viscous_friction", 2, {"Fv": 2.0})
     assert (tilt.effect.name, tilt.joint, tilt.values) == ("gravity_tilt", None, {"theta_1": 0.02, "theta_2": -0.01})
+
+
+def test_a_file_of_an_older_version_is_read(ur5: Robot, tmp_path: Path) -> None:
+    path = tmp_path / "effects.toml"
+    path.write_text(COUPLED + "sense = -1\n")
+    (coupled,) = read_effects(path, ur5)
+    assert coupled.values == {"Fv": 2.0, "Fc": 1.0, "Ia": 0.0, "ratio": -1.0}
+    path.write_text(COUPLED + "sense = -1\nratio = -1\n")
+    with pytest.raises(EffectError, match="no parameter 'sense'"):
+        read_effects(path, ur5)
 
 
 def test_an_empty_file_hides_nothing(ur5: Robot, tmp_path: Path) -> None:

@@ -9,7 +9,14 @@ from tests.tracking.fleets import DRY, VISCOUS, record, write_arm
 import lagnet
 from lagnet.models.corrected.model import NamedEffect
 from lagnet.tracking.fixed_fit import SHARE, fit_set
-from lagnet.tracking.tracked_set import TrackedSet, beyond, common_set, new_physics, set_from_plain
+from lagnet.tracking.tracked_set import (
+    TrackedSet,
+    beyond,
+    common_set,
+    effect_from_plain,
+    new_physics,
+    set_from_plain,
+)
 
 FRICTION = tuple(
     NamedEffect(effect, joint, {name: 1.0})
@@ -83,6 +90,12 @@ def test_a_set_survives_json():
 
     tracked = SET.with_new([TOOL])
     assert set_from_plain(json.loads(json.dumps(tracked.plain()))) == tracked
+
+
+def test_a_coupled_motor_of_an_older_track_keeps_its_ratio() -> None:
+    values = {"Fv": 1.0, "Fc": 0.5, "Ia": 0.1}
+    held = {"effect": "coupled_transmission", "joint": 1, "values": values | {"sense": -1.0}}
+    assert effect_from_plain(held).values == values | {"ratio": -1.0}
 
 
 def test_names_of_what_is_followed_already_are_not_new():

@@ -30,7 +30,10 @@ recorded signal, which holds all that came before."""
 
 @dataclass(frozen=True)
 class Parameter:
-    """One physical parameter: its name, symbol, unit for revolute joints, bounds and what it means."""
+    """One physical parameter: its name, symbol, unit for revolute joints, bounds and what it means.
+
+    `formerly` is the name under which older files hold it.
+    """
 
     name: str
     symbol: str
@@ -38,6 +41,7 @@ class Parameter:
     meaning: str
     lower: float = -np.inf
     upper: float = np.inf
+    formerly: str = ""
 
     def unit_for(self, prismatic: bool) -> str:
         """The unit, with torques and angles turned into forces and lengths for a prismatic joint."""
@@ -103,6 +107,11 @@ class Effect(ABC):
         """Lower and upper bounds of the coefficients of `columns`."""
         lower = np.array([p.lower for p in self.parameters])
         return lower, np.array([p.upper for p in self.parameters])
+
+    def with_names_of_today(self, held: Mapping[str, float]) -> Values:
+        """The values of a file, with parameters that it holds under a former name under that of today."""
+        names = {p.formerly: p.name for p in self.parameters if p.formerly and p.name not in held}
+        return {names.get(name, name): value for name, value in dict(held).items()}
 
     def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
         """The numbers in which a refit steps, shape (k,): the parameters, or what the law is plainer in."""

@@ -50,7 +50,7 @@ def inject(robot: Robot, name: str, joint: str | None, values: Values, where: st
     if not effect.instantaneous and effect.stage != "signal":
         raise EffectError(f"{name} remembers the past and cannot be injected yet", where=where)
     index = _joint_index(robot, effect, joint, where)
-    return InjectedEffect(effect, index, _checked_values(effect, values, where))
+    return InjectedEffect(effect, index, _checked_values(effect, effect.with_names_of_today(values), where))
 
 
 def _known(name: str, where: str | None) -> Effect:

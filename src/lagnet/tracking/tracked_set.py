@@ -84,7 +84,8 @@ def set_from_plain(plain: Mapping[str, Any]) -> TrackedSet:
 def effect_from_plain(plain: Mapping[str, Any]) -> NamedEffect:
     """An effect without an interval, from plain values."""
     law, joint = effect_named(str(plain["effect"])), plain["joint"]
-    values = {p.name: float(plain["values"][p.name]) for p in law.parameters}
+    held = law.with_names_of_today(plain["values"])
+    values = {p.name: float(held[p.name]) for p in law.parameters}
     return NamedEffect(law.name, None if joint is None else int(joint), values)
 
 

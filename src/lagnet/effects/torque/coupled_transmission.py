@@ -10,6 +10,7 @@ from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_both_directions
 from lagnet.effects.motion import Motion
 
+TURNS = "what the motor turns with the joint before, over its own"
 PLAIN = (1.0, -1.0)  # ratios of most wrists, that are tried without a residual
 STEEPEST = 10.0  # either motor or joint turns so many times as fast
 STEPS = 24  # ratios of one sign that a residual is asked for
@@ -32,7 +33,7 @@ class CoupledTransmission(Effect):
         Parameter("Fv", "F_v", "N m s/rad", "viscous friction of the coupled motor", lower=0.0),
         Parameter("Fc", "F_c", "N m", "dry friction of the coupled motor", lower=0.0),
         Parameter("Ia", "I_a", "kg m²", "rotor inertia of the coupled motor", lower=0.0),
-        Parameter("ratio", "c", "–", "what the motor turns with the joint before, over its own", -STEEPEST, STEEPEST),
+        Parameter("ratio", "c", "–", TURNS, -STEEPEST, STEEPEST, formerly="sense"),
     )
     reaches_all = True
     absent = (("Fv", 0.0), ("Fc", 0.0), ("Ia", 0.0))

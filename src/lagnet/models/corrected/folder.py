@@ -25,7 +25,6 @@ FORMAT = 2  # 2: with the identified layer
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200
-FORMER = {"ratio": "sense"}  # names of parameters in folders that were written before
 
 
 def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
@@ -163,8 +162,8 @@ def _effect(entry: Any, n_dof: int) -> NamedEffect:
     joint = entry["joint"]
     if (joint is None) != law.whole_arm or (joint is not None and not 0 <= int(joint) < n_dof):
         raise ValueError(f"{law.name} at joint {joint}")
-    held = entry["values"]
-    values = {p.name: float(held[p.name if p.name in held else FORMER.get(p.name, p.name)]) for p in law.parameters}
+    held = law.with_names_of_today(entry["values"])
+    values = {p.name: float(held[p.name]) for p in law.parameters}
     if not all(map(math.isfinite, values.values())):
         raise ValueError(f"{law.name} has a parameter that is not finite")
     interval, recording = entry.get("interval"), entry.get("recording")
