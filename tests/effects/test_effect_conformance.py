@@ -124,6 +124,12 @@ def test_columns_are_finite_and_of_the_right_shape(effect: Effect, ur5, sweep, s
 
 
 @every_effect
+def test_what_is_never_negative_may_be_absent(effect: Effect, ur5, sweep, shapes_of) -> None:
+    _, shapes = shapes_of(effect, sweep(ur5, 1).motion, pick_joint(effect, ur5.n_dof, 1))
+    assert not effect.nonnegative or all(np.all(effect.bounds(shape)[0] == 0.0) for shape in shapes)
+
+
+@every_effect
 def test_some_motion_has_shapes(effect: Effect, ur5, sweep, shapes_of) -> None:
     found = [shapes_of(effect, sweep(ur5, seed).motion, pick_joint(effect, 6, seed))[1] for seed in range(6)]
     assert any(found)

@@ -70,6 +70,7 @@ class Effect(ABC):
     uses_measured_torque: ClassVar[bool] = False  # True: its torque follows from the recorded one, noise and all
     uses_load: ClassVar[bool] = False  # True: after the body stage, its torque follows from the load of its joint
     plain_terms: ClassVar[int] = 0  # of no effect, that must not do better in its place; 0: none is plainer than it
+    nonnegative: ClassVar[bool] = False  # True: each coefficient is a mechanism by itself, at zero where it is absent
     by_convention: ClassVar[Mapping[str, float]] = {}  # half-widths that a parameter's meaning leaves open, SI units
     instantaneous: ClassVar[bool] = True  # False: the torque of a sample depends on samples before it
     is_friction: ClassVar[bool] = False  # True: it dissipates energy at a joint

@@ -12,7 +12,7 @@ import numpy as np
 from lagnet.diagnosis.regression.block_gram import BlockGrams
 from lagnet.diagnosis.regression.compiled import add_block, squared_errors
 from lagnet.diagnosis.regression.library import Library
-from lagnet.diagnosis.regression.normal_equations import ridge_solve
+from lagnet.diagnosis.regression.normal_equations import nonnegative_solve
 from lagnet.diagnosis.settings import DecisionLimits
 
 T = TypeVar("T")
@@ -119,7 +119,7 @@ def fit_selection(equations: NormalEquations, selection: Sequence[int], sigma: n
     order = tuple(selection)
     where = _places(equations, order)
     gram, moment = assemble(equations, order, where, sigma, [t[None] for t in equations.total])
-    theta = ridge_solve(gram[0], moment[0], RIDGE) if order else np.zeros(0)
+    theta = _solved(equations, order, gram[0], moment[0]) if order else np.zeros(0)
     coefficients = {i: theta[where[i]] for i in order}
     sse = _unseen_error(equations, order, where, sigma) if folds else np.zeros(equations.library.n_dof)
     return Fit(order, coefficients, sse)
@@ -166,7 +166,15 @@ def _theta_without_folds(
 ) -> np.ndarray:
     """Coefficients of the fit to all folds but one, shape (n_folds, K)."""
     gram, moment = assemble(equations, order, where, sigma, equations.without_folds)
-    return ridge_solve(gram, moment, RIDGE)
+    return _solved(equations, order, gram, moment)
+
+
+def _solved(equations: NormalEquations, order: Sequence[int], gram: np.ndarray, moment: np.ndarray) -> np.ndarray:
+    """Coefficients of a selection, batched; none below zero where a law says that it has no such."""
+    library = equations.library
+    laws = [library.hypotheses[i].law for i in order]
+    signed = np.repeat([law.nonnegative for law in laws], [library.widths[i] for i in order])
+    return nonnegative_solve(gram, moment, RIDGE, signed)
 
 
 def unseen_block_errors(equations: NormalEquations, selection: Sequence[int], sigma: np.ndarray) -> np.ndarray:

@@ -47,6 +47,23 @@ def ridge_solve(gram: np.ndarray, moment: np.ndarray, ridge: float) -> np.ndarra
     return np.linalg.solve(scaled, (moment * scale)[..., None])[..., 0] * scale
 
 
+def nonnegative_solve(gram: np.ndarray, moment: np.ndarray, ridge: float, signed: np.ndarray) -> np.ndarray:
+    """`ridge_solve` with θ_k ≥ 0 for signed k: those that come out below zero are held there, and the rest follows.
+
+    None is released again, so that the error is at least that of the exact bounded optimum.
+
+    Args:
+        gram, moment, ridge: as in `ridge_solve`.
+        signed: shape (k,), coefficients that are never negative.
+    """
+    theta, free = ridge_solve(gram, moment, ridge), np.ones(moment.shape, dtype=bool)
+    while np.any(below := signed & (theta < 0.0)):
+        free &= ~below
+        both = free[..., :, None] & free[..., None, :]
+        theta = ridge_solve(np.where(both, gram, 0.0), np.where(free, moment, 0.0), ridge)
+    return theta
+
+
 def leaves_open(gram: np.ndarray, powers: np.ndarray) -> bool:
     """Whether there are directions along which the residuals do not change.
 
