@@ -54,6 +54,11 @@ def test_friction_dissipates_and_a_rotor_has_inertia(drag, plausible: bool) -> N
     assert LAW.plausible(np.array(drag), {"ratio": 1.7}) == plausible
 
 
+@pytest.mark.parametrize(("ratio", "plain"), [(2.2, 1.0), (0.3, 1.0), (-1.1, -1.0), (1.0, None), (-1.0, None)])
+def test_a_ratio_of_one_is_the_special_case(ratio: float, plain: float | None) -> None:
+    assert LAW.special_case({"ratio": ratio}) == (None if plain is None else {"ratio": plain})
+
+
 def _args(sweep, ur5, ratio: float):
     motion, rest = left(sweep, ur5, ratio)
     return motion, JOINT, rest

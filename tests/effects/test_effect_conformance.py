@@ -124,6 +124,15 @@ def test_columns_are_finite_and_of_the_right_shape(effect: Effect, ur5, sweep, s
 
 
 @every_effect
+def test_a_special_case_is_a_shape_of_the_same_law_and_has_none_itself(effect: Effect, ur5, sweep, shapes_of) -> None:
+    _, shapes = shapes_of(effect, sweep(ur5, 1).motion, pick_joint(effect, ur5.n_dof, 1))
+    for shape in shapes:
+        case = effect.special_case(shape)
+        assert case is None or case.keys() == shape.keys()
+        assert case is None or effect.special_case(case) is None
+
+
+@every_effect
 def test_what_is_never_negative_may_be_absent(effect: Effect, ur5, sweep, shapes_of) -> None:
     _, shapes = shapes_of(effect, sweep(ur5, 1).motion, pick_joint(effect, ur5.n_dof, 1))
     assert not effect.nonnegative or all(np.all(effect.bounds(shape)[0] == 0.0) for shape in shapes)

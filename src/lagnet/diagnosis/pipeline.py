@@ -10,6 +10,7 @@ import numpy as np
 from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
 from lagnet.diagnosis.estimation.misspecification import interval_errors, widened, with_convention
 from lagnet.diagnosis.estimation.refit import Refit
+from lagnet.diagnosis.estimation.special_case import with_special_cases
 from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.free_bodies import (
     are_scaled_widely,
@@ -71,7 +72,7 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
         again = apply_rules([r for r in given.rules if r.after_each_fit], candidate.without(*ambiguous))
         candidate, rejected = again.candidate, (*rejected, *again.rejected)
         comparisons = _comparisons(candidate)
-    fitted, found = candidate.refit, candidate.selection
+    fitted, found = with_special_cases(problem, candidate.refit, candidate.sigma), candidate.selection
     problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
     return DiagnosisState(
         problem,

@@ -104,6 +104,10 @@ class Effect(ABC):
         """
         return ()
 
+    def special_case(self, shape: Mapping[str, float]) -> Values | None:
+        """Values of a plainer form, that stand unless those of the shape explain noticeably more; None: none is."""
+        return None
+
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coefficients of `columns`."""
         lower = np.array([p.lower for p in self.parameters])
@@ -125,6 +129,10 @@ class Effect(ABC):
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""
         return np.array([p.lower for p in self.parameters]), np.array([p.upper for p in self.parameters])
+
+    def chosen(self, values: Mapping[str, float]) -> np.ndarray:
+        """Which coordinates stand at the value of a special case, shape (k,); none by default."""
+        return np.zeros(self.coordinates(values).size, dtype=bool)
 
     def is_determined(self, intervals: Mapping[str, tuple[float, float]]) -> bool:
         """Whether some 95 % interval leaves out the value at which the effect would not be there."""

@@ -83,6 +83,10 @@ class FollowedSlots(Slots):
         """No coordinate is one of the ten of a body, shape (k,)."""
         return np.zeros(self.starts[-1] + len(self.bodies), dtype=bool)
 
+    def chosen(self) -> np.ndarray:
+        """Whether a coordinate stands at the value of a special case, shape (k,); no share does."""
+        return np.append(Slots.chosen(self), np.zeros(len(self.bodies), dtype=bool))
+
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds; shares have none."""
         lower, upper = Slots.bounds(self) if self.effects else (np.zeros(0), np.zeros(0))
@@ -112,7 +116,7 @@ def fit_set(recording: Recording, nominal: Any, tracked: TrackedSet) -> FixedFit
     slots, x = _slots(tracked.effects, problem.n_dof)
     for _ in range(ROUNDS):
         sigma = np.maximum(_left(problem, slots.named(x)), 1e-6 * problem.scale + 1e-12)
-        work = GaussNewton(problem, spread(problem.fit), sigma, slots)
+        work = GaussNewton(problem, spread(problem.fit), sigma, slots, slots.chosen())
         x = work.descend(np.clip(x, *slots.bounds()), np.ones(x.size, dtype=bool))
     effects = slots.named(x)
     rows = _rows(work, x, tracked, problem) if x.size else ()

@@ -41,6 +41,10 @@ class Slots:
         """Whether a coordinate is a body's, shape (k,)."""
         return np.repeat([effect_named(e.effect).is_body for e in self.effects], np.diff(self.starts))
 
+    def chosen(self) -> np.ndarray:
+        """Whether a coordinate stands at the value of a special case, shape (k,)."""
+        return np.concatenate([np.zeros(0, dtype=bool), *(e.chosen() for e in self.effects)])
+
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         pairs = [e.coordinate_bounds() for e in self.effects]
         return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
@@ -61,12 +65,16 @@ def blocks_of(problem: Problem, pieces: Sequence[Segment]) -> list[list[np.ndarr
 
 @dataclass(frozen=True, eq=False)
 class GaussNewton:
-    """A refit's data: segments of the problem, the noise σ of each joint and the place of each coordinate."""
+    """A refit's data: segments of the problem, the noise σ of each joint and the place of each coordinate.
+
+    `held`, shape (k,), tells which coordinates stay as they are given, without an interval.
+    """
 
     problem: Problem
     pieces: tuple[Segment, ...]
     sigma: np.ndarray
     slots: Slots
+    held: np.ndarray
     known: dict[bytes, tuple[list[np.ndarray], list[np.ndarray]]] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
@@ -101,6 +109,8 @@ class GaussNewton:
     def _moved(self, x: np.ndarray, i: int) -> tuple[float, int | None, NamedEffect | None]:
         """Step of a coordinate, number of the effect that it changes, and that effect; None where nothing changes."""
         step = self._step(x, i)
+        if self.held[i]:
+            return step, None, None
         before, after = self.slots.named(x), self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
         changed = [n for n, (a, b) in enumerate(zip(before, after, strict=True)) if a.key != b.key]
         return (step, changed[0], after[changed[0]]) if changed else (step, None, None)
@@ -174,9 +184,10 @@ class GaussNewton:
 
 
 def start_gauss_newton(
-    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray
+    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray, choices_stay: bool = True
 ) -> tuple[GaussNewton, np.ndarray]:
     """The work of a refit, and the coordinates of the effects as given."""
     parts = [e.coordinates() for e in effects]
     slots = Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
-    return GaussNewton(problem, spread(problem.fit), sigma, slots), np.concatenate(parts)
+    held = slots.chosen() & choices_stay
+    return GaussNewton(problem, spread(problem.fit), sigma, slots, held), np.concatenate(parts)

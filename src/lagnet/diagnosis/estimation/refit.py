@@ -55,17 +55,18 @@ def tangent_at(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarr
     return Tangent(work.pieces, residuals, jacobians, np.asarray(block_diag(*blocks)))
 
 
-def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray) -> Refit:
+def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray, choices_stay: bool = True) -> Refit:
     """Gauss–Newton from the search's values, joints weighted by 1/σ².
 
     Args:
         problem: the fit pieces are used, a spread of them where there are very many samples.
         effects: with starting values.
         sigma: shape (dof,), residual of each joint [N m].
+        choices_stay: whether values of special cases, such as a ratio of one, are left as they are.
     """
     if not effects:
         return Refit((), (), np.zeros((0, 0)))
-    work, start = start_gauss_newton(problem, effects, sigma)
+    work, start = start_gauss_newton(problem, effects, sigma, choices_stay)
     slots = work.slots
     x = work.descend(np.clip(start, *slots.bounds()), np.ones(start.size, dtype=bool))
     x = with_physical_bodies(work, x)

@@ -71,7 +71,7 @@ class Candidate:
         """The selection fitted by the exact laws, all parameters together."""
         known = {(e.effect, e.joint): e for e in self.start}
         found = named_effects(self.library, self.selection)
-        return refit(self.problem, [known.get((e.effect, e.joint), e) for e in found], self.sigma)
+        return refit(self.problem, [known.get((e.effect, e.joint), e) for e in found], self.sigma, choices_stay=False)
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:

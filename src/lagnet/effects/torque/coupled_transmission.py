@@ -56,6 +56,10 @@ class CoupledTransmission(Effect):
         enough = finest.fun < (1.0 - BETTER) * min(left(ratio) for ratio in PLAIN)
         return ({"ratio": float(finest.x)},) if enough else ()
 
+    def special_case(self, shape: Mapping[str, float]) -> Values | None:
+        ratio = float(shape["ratio"])
+        return None if ratio in PLAIN else {"ratio": float(np.copysign(1.0, ratio))}
+
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
         ratio = shape["ratio"]
         speed = motion.v[:, joint] + ratio * motion.v[:, joint - 1]
@@ -74,6 +78,9 @@ class CoupledTransmission(Effect):
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         return self.columns(motion, joint, values) @ np.array([values["Fv"], values["Fc"], values["Ia"]])
+
+    def chosen(self, values: Mapping[str, float]) -> np.ndarray:
+        return np.array([False, False, False, self.special_case(values) is None])
 
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         return bool(coefficients[1] > 0.0 and np.all(coefficients >= 0.0))  # every motor has dry friction

@@ -57,6 +57,11 @@ class NamedEffect:
         n_edges = len(self.interval or ())
         return np.append(lower, np.full(n_edges, -np.inf)), np.append(upper, np.full(n_edges, np.inf))
 
+    def chosen(self) -> np.ndarray:
+        """Which coordinates stand at the value of a special case, shape (k,)."""
+        own = effect_named(self.effect).chosen(self.values)
+        return np.append(own, np.zeros(len(self.interval or ()), dtype=bool))
+
     def parameters(self) -> dict[str, float]:
         """Values by name, with t0 and t1 [s] where the effect acts on an interval."""
         edges = {} if self.interval is None else dict(zip(EDGES, map(float, self.interval), strict=True))
