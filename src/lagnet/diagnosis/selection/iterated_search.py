@@ -17,6 +17,7 @@ from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
 from lagnet.diagnosis.regression.library import Library, build_library
 from lagnet.diagnosis.selection.arm_search import Selection, search_arm
+from lagnet.diagnosis.selection.gain_exchange import exchange_gains
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
 from lagnet.effects.catalogue import effect_named
@@ -63,7 +64,8 @@ def _search_among(
 ) -> tuple[NormalEquations, Selection]:
     equations = sum_normal_equations(library, collect_block_grams(problem, library, problem.fit), problem.limits)
     starts = (None,) if last is None or not last[1].arm_wide else (None, _carried_over(*last, library))
-    return equations, search_arm(equations, equations.samples * noise**2, equations.samples * problem.scale**2, starts)
+    found = search_arm(equations, equations.samples * noise**2, equations.samples * problem.scale**2, starts)
+    return equations, exchange_gains(equations, found)
 
 
 def _carried_over(library: Library, found: Selection, to: Library) -> Selection:
