@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class DecisionLimits:
@@ -39,3 +41,11 @@ class DecisionLimits:
     def penalty(self, coefficients: int, shapes: int) -> float:
         """Nats that a hypothesis with so many coefficients and shape parameters must gain."""
         return self.complexity_penalty + self.penalty_per_coefficient * (coefficients + shapes)
+
+    def least_power(self, torque: float | np.ndarray, nominal: float | np.ndarray) -> np.ndarray:
+        """max(t² P_τ, r P_nominal), shape of the arguments: power that an effect must explain to be claimed [N² m²].
+
+        Args:
+            torque, nominal: power of a joint's torque about its mean, and of what the nominal model leaves.
+        """
+        return np.maximum(self.least_torque**2 * torque, self.least_of_residual * nominal)

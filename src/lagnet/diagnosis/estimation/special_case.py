@@ -42,8 +42,7 @@ def _leaves_less(problem: Problem, n: int, free: Sequence[NamedEffect], plain: S
     nominal, without, before, after = (_power(problem, problem.fit, e) for e in ((), absent, plain, free))
     explained = np.minimum(without - after, problem.scale**2)
     shares = (limits.least_share * before, limits.least_over_special_case * explained)
-    sizes = (limits.least_torque**2 * problem.scale**2, limits.least_of_residual * nominal)
-    noticeable = before - after > np.maximum.reduce([*shares, *sizes])
+    noticeable = before - after > np.maximum.reduce([*shares, limits.least_power(problem.scale**2, nominal)])
     confirmed = _power(problem, problem.holdout, free) <= _power(problem, problem.holdout, plain)
     return bool(np.any(noticeable & confirmed))
 

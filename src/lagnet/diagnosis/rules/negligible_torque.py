@@ -56,8 +56,7 @@ class NegligibleTorque(RejectionRule):
         motions = [p.motion(problem) for p in pieces]
         sums = [Superposition(m, effects) for m in motions]
         nominal = _mean_square([problem.residual(p) for p in pieces])
-        limits = problem.limits
-        least = np.maximum(limits.least_torque**2 * problem.scale**2, limits.least_of_residual * nominal)
+        least = problem.limits.least_power(problem.scale**2, nominal)
         out = []
         for n in range(len(effects)):
             parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]

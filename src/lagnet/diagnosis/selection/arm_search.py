@@ -216,7 +216,7 @@ def noticeable(equations: NormalEquations, scales: Scales, before: np.ndarray, a
     """E_before − E_after > max(s E_before, t² n var τ, r E_nominal): joints with a gain to be claimed, shape (dof,)."""
     nominal = np.array([t[-1, -1] for t in equations.total])
     limits = equations.limits
-    least = np.maximum(limits.least_torque**2 * scales.torque_power, limits.least_of_residual * nominal)
+    least = limits.least_power(scales.torque_power, nominal)
     return before - after > np.maximum(limits.least_share * before, least)
 
 

@@ -86,8 +86,8 @@ class JointView:
         """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
         without = self.error([i for i in selection if i != index])
         gain = without - self.error(selection)
-        least_torque = self.limits.least_torque**2 * self.torque_power
-        return gain > max(self.limits.least_share * without, least_torque, self.least_gain)
+        least = float(self.limits.least_power(self.torque_power, self.system.power))
+        return gain > max(self.limits.least_share * without, least)
 
     @property
     def least_gain(self) -> float:
