@@ -67,8 +67,9 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     left = apply_rules([r for r in given.rules if r.after_refit], left.candidate)
     candidate, rejected = left.candidate, (*rejected, *left.rejected)
     comparisons = _comparisons(candidate)
-    ambiguous = ambiguous_causes(equations.library, comparisons, problem.limits.most_names)
+    ambiguous, supposed = ambiguous_causes(equations.library, comparisons, problem.limits.most_names), ()
     if ambiguous:
+        supposed = candidate.refit.effects
         again = apply_rules([r for r in given.rules if r.after_each_fit], candidate.without(*ambiguous))
         candidate, rejected = again.candidate, (*rejected, *again.rejected)
         comparisons = _comparisons(candidate)
@@ -89,6 +90,7 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
         given.seed,
         rejected,
         ambiguous=tuple(ambiguous.values()),
+        supposed=supposed,
     )
 
 

@@ -153,7 +153,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         again: another run on the same recordings with some samples set aside.
     """
     problem = state.problem
-    scan = detect_events(problem, state.refit.effects, state.noise, SUSPECT)
+    scan = detect_events(problem, state.lasting_effects, state.noise, SUSPECT)
     events, clean = scan.events, state
     for _ in range(LOOKS):
         if not events:
@@ -163,7 +163,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
             return _with_differing_recordings(state, scan, again) or replace(state, events=events)
         clean = again(fit_sign_model(replace(masked, slow=blurred_speed(thinned(state.fit)), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
-        scan = detect_events(whole, clean.refit.effects, state.noise)
+        scan = detect_events(whole, clean.lasting_effects, state.noise)
         slack = SMEAR / problem.bandwidth
         if all(any(old.covers(new, slack) for old in events) for new in scan.events):
             break

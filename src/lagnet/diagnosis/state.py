@@ -52,6 +52,7 @@ class DiagnosisState:
         transients: effects that act for a while only.
         events: intervals in which something without a name acts.
         ambiguous: causes that too many names explain equally.
+        supposed: the persistent effects with the likeliest name of every ambiguous cause; empty: those of `refit`.
         judged: the problem with free links beside which the names were judged; None: `problem`.
     """
 
@@ -71,12 +72,18 @@ class DiagnosisState:
     transients: tuple[Transient, ...] = ()
     events: tuple[EventInterval, ...] = ()
     ambiguous: tuple[AmbiguousCause, ...] = ()
+    supposed: tuple[NamedEffect, ...] = ()
     judged: Problem | None = None
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
         """Persistent effects and transients."""
         return (*self.refit.effects, *(p.effect for p in self.transients))
+
+    @property
+    def lasting_effects(self) -> tuple[NamedEffect, ...]:
+        """What lasts: beside it events are looked for. A cause is there, whatever its name."""
+        return self.supposed or self.refit.effects
 
     @cached_property
     def drifts(self) -> tuple[Drift, ...]:
