@@ -6,8 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.selection.iterated_search import _bears_its_columns
+from lagnet.models.corrected.named_effects import NamedEffect
 
 MASS = 1.5  # [kg]
 TILTED = np.array([0.9, -0.7, -9.7])  # [m s⁻²]
@@ -72,3 +75,16 @@ def test_an_encoder_offset_on_a_tilted_base_is_no_body(plant, arm, names) -> Non
     assert names(result) == {("gravity_tilt", None), ("encoder_offset", arm.joints[2])}
     found = {e.effect: e for e in result.effects}
     assert found["encoder_offset"].value("delta") == pytest.approx(0.04, rel=0.02)
+
+
+def test_columns_of_a_body_that_is_not_selected_bear_no_selection(plant, arm, loaded) -> None:
+    """Gains of a load that nobody names would explain this load, and pay for no body."""
+    real = plant(robot=loaded)
+    posed = pose(arm, real.record(1), real.record(2))
+    body = {"m": MASS, "cx": 0.05, "cy": 0.08, "cz": 0.15, "Ixx": 0.006, "Iyy": 0.006, "Izz": 0.006}
+    known = (NamedEffect("payload", None, {"Ixy": 0.0, "Ixz": 0.0, "Iyz": 0.0, **body}),)
+    problem = replace(posed.problem, known=known)
+    with_load, without = posed.select({}, ["payload"]), posed.select({0: ["torque_gain"], 1: ["torque_gain"]})
+    assert _bears_its_columns(problem, posed.equations, with_load)
+    assert not _bears_its_columns(problem, posed.equations, without)
+    assert _bears_its_columns(posed.problem, posed.equations, without)

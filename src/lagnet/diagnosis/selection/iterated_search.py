@@ -33,7 +33,8 @@ LEFT = 2.0  # times the noise power: a joint with a smaller residual needs no fu
 def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquations, Selection]:
     """The best selection, its normal equations, and the problem with the bodies that its columns follow from.
 
-    Rounds need not settle where something is of no law's form: the best of them counts, the later of equals.
+    Rounds need not settle where something is of no law's form: the best of them counts, the later of equals. One whose
+    columns follow from bodies that it does not select itself does not count: no penalty was paid for these.
 
     Args:
         problem: just posed.
@@ -48,7 +49,8 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquation
             break
         problem = replace(problem, known=known)
         rounds.append((problem, *_search_once(problem, noise, (equations.library, found))))
-    return max(reversed(rounds), key=lambda r: r[2].score)
+    counted = [*rounds[:1], *(r for r in rounds[1:] if _bears_its_columns(*r))]
+    return max(reversed(counted), key=lambda r: r[2].score)
 
 
 def _search_once(
@@ -86,6 +88,18 @@ def _known(library: Library, found: Selection) -> tuple[NamedEffect, ...]:
     """
     effects = ((e, effect_named(e.effect)) for e in named_effects(library, found))
     return tuple(e for e, law in effects if law.stage == "body" and law.reaches_all and law.instantaneous)
+
+
+def _bears_its_columns(problem: Problem, equations: NormalEquations, found: Selection) -> bool:
+    """Whether Σ_j ‖τ_found − τ_known‖² / ‖τ‖² < Σ_j ‖τ_nominal − τ_known‖² / ‖τ‖², or no body was known."""
+    if not problem.known:
+        return True
+    motion = problem.summary()
+    bodies = _known(equations.library, found)
+    known, now = (load_before(motion, effects, "signal") for effects in (problem.known, bodies))
+    scale = np.maximum(np.mean(motion.load**2, axis=0), 1e-300)
+    apart, whole = (np.sum(np.mean((other - known) ** 2, axis=0) / scale) for other in (now, motion.load))
+    return bool(apart < whole)
 
 
 def _is_news(problem: Problem, known: tuple[NamedEffect, ...], left: np.ndarray) -> bool:
