@@ -24,7 +24,7 @@ def exchange_gains(equations: NormalEquations, found: Selection) -> Selection:
     """The selection, or one of larger log P without its gains, with one more arm-wide hypothesis or none.
 
     Where a gain returns beside the bodies, these are not what the gains stood for: a part of the torque alone is split
-    another way.
+    another way. Where log P does not decide, the selection stays.
     """
     gains = _gains(equations, found)
     if len(gains) < 2 or len(set(np.sign(gains))) > 1:
@@ -32,7 +32,8 @@ def exchange_gains(equations: NormalEquations, found: Selection) -> Selection:
     bare = _without_gains(equations, found)
     starts = [bare.arm_wide, *((*bare.arm_wide, i) for i in _instead(equations, bare))]
     tried = [_improved(equations, bare, arm_wide) for arm_wide in starts if arm_wide]
-    return max([found, *(one for one in tried if not _gains(equations, one))], key=lambda one: one.score)
+    best = max((one for one in tried if not _gains(equations, one)), key=lambda one: one.score, default=found)
+    return best if best.score - found.score > equations.limits.tie_odds * np.log(10.0) else found
 
 
 def _gains(equations: NormalEquations, found: Selection) -> list[float]:
