@@ -71,17 +71,32 @@ def test_a_true_name_beside_physics_without_one_is_kept(plant, at, arm, names) -
     assert ("quadratic_drag", arm.joints[1]) in names(result)
 
 
-def test_a_cable_that_goes_taut_is_among_the_plain_terms(arm, plant) -> None:
-    """Wherever it goes taut, between the angles that are tried too: three terms leave next to nothing of it."""
+@pytest.fixture(scope="module")
+def table(arm, plant):
+    """Terms of the second joint on one recording, what is left of a torque beside the best three, and its segments."""
     given = condition([plant().record(1)])
     problem, own = pose_problem(arm, given, given), 1
     terms = surrogate_terms._terms(problem, problem.fit, own)
-    angle = np.concatenate([p.q[:, own] for p in problem.fit])
-    tight, hard = np.quantile(angle, [0.56, 0.83])
-    pull = [np.maximum(p.q[:, own] - tight, 0.0) + 3.0 * np.maximum(p.q[:, own] - hard, 0.0) for p in problem.fit]
-    wanted = np.concatenate(
-        [problem.reduce(p, x[:, None])[:, 0] * p.counts[:, own] for p, x in zip(problem.fit, pull, strict=True)]
-    )
-    chosen = terms[:, surrogate_terms._chosen(np.zeros((len(wanted), 0)), terms, wanted, 3)]
-    rest = wanted - chosen @ np.linalg.lstsq(chosen, wanted, rcond=None)[0]
-    assert np.sum(rest**2) < 0.01 * np.sum(wanted**2)
+
+    def left(law) -> float:
+        parts = [problem.reduce(p, law(p)[:, None])[:, 0] * p.counts[:, own] for p in problem.fit]
+        wanted = np.concatenate(parts)
+        chosen = terms[:, surrogate_terms._chosen(np.zeros((len(wanted), 0)), terms, wanted, 3)]
+        rest = wanted - chosen @ np.linalg.lstsq(chosen, wanted, rcond=None)[0]
+        return float(np.sum(rest**2) / np.sum(wanted**2))
+
+    return problem, own, left
+
+
+def test_a_cable_that_goes_taut_is_among_the_plain_terms(table) -> None:
+    """Wherever it goes taut, between the angles that are tried too: three terms leave next to nothing of it."""
+    problem, own, left = table
+    tight, hard = np.quantile(np.concatenate([p.q[:, own] for p in problem.fit]), [0.56, 0.83])
+    assert left(lambda p: np.maximum(p.q[:, own] - tight, 0.0) + 3.0 * np.maximum(p.q[:, own] - hard, 0.0)) < 0.01
+
+
+def test_friction_that_changes_along_the_path_is_among_the_plain_terms(table) -> None:
+    """Its mean is one of the terms: else they would replace no law that has this mean as well."""
+    problem, own, left = table
+    sign = {id(p): np.tanh(p.v[:, own] / problem.slow[own]) for p in problem.fit}
+    assert left(lambda p: (1.0 + 0.6 * np.sin(3.0 * p.q[:, own] + 0.4)) * sign[id(p)]) < 0.01

@@ -5,7 +5,7 @@ weights vary with sines of angles. Where a joint has a residual above the noise,
 the catalogue (another joint's angle, friction that changes along the path) replace an effect. If they leave a much
 smaller residual, and the effect beside them explains next to nothing, it only imitated them. Only laws that take their
 form from the arm's own torque, or a power of speed, are tested: dry and viscous friction, springs, offsets and rotors
-are as plain as the terms.
+are as plain as the terms. Dry friction is among the terms, as the mean of one that changes along the path.
 """
 
 from __future__ import annotations
@@ -180,7 +180,7 @@ def _terms(problem: Problem, pieces: tuple[Segment, ...], joint: int) -> np.ndar
 
 def _term_columns(q: np.ndarray, v: np.ndarray, sign: np.ndarray, joint: int) -> Iterator[np.ndarray]:
     own, rub = q[:, joint], sign[:, joint]
-    yield from (own**2, own**3, v[:, joint] ** 3, rub * own, rub * own**2)
+    yield from (own**2, own**3, v[:, joint] ** 3, rub, rub * own, rub * own**2)
     yield from (rub * wave(n * own) for n in TURNS for wave in (np.sin, np.cos))
     for other in range(q.shape[1]):
         if other != joint:
