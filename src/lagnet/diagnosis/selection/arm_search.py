@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -200,8 +201,13 @@ def _promising(equations: NormalEquations, best: Selection) -> list[int]:
             gain = _gain(equations, best, fit)
             if gain > 0.0:
                 ranks[i] = _is_physical(equations, i, fit), gain
-    likeliest = {hypotheses[i].place: i for i in sorted(ranks, key=lambda i: ranks[i])}
-    return sorted(likeliest.values(), key=lambda i: ranks[i], reverse=True)[:TRIED]
+    return one_a_place(equations, ranks)[:TRIED]
+
+
+def one_a_place(equations: NormalEquations, ranks: Mapping[int, Any]) -> list[int]:
+    """Of ranked hypotheses the best of each effect at its joint, best first."""
+    best = {equations.library.hypotheses[i].place: i for i in sorted(ranks, key=lambda i: ranks[i])}
+    return sorted(best.values(), key=lambda i: ranks[i], reverse=True)
 
 
 def _gain(equations: NormalEquations, best: Selection, fit: Fit) -> float:

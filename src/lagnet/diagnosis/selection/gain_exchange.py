@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import NormalEquations
-from lagnet.diagnosis.selection.arm_search import Selection, refit_selection, total_score, views_of
+from lagnet.diagnosis.selection.arm_search import Selection, one_a_place, refit_selection, total_score, views_of
 from lagnet.diagnosis.selection.joint_search import improve
 
 GAIN = "torque_gain"
@@ -56,8 +56,7 @@ def _instead(equations: NormalEquations, bare: Selection) -> list[int]:
     hypotheses, taken = equations.library.hypotheses, {equations.library.hypotheses[i].place for i in bare.arm_wide}
     free = [i for i in equations.library.reaching if hypotheses[i].place not in taken]
     scores = {i: total_score(equations, (*bare.arm_wide, i), bare) for i in free}
-    best = {hypotheses[i].place: i for i in sorted(scores, key=lambda i: scores[i])}
-    return sorted(best.values(), key=lambda i: -scores[i])[:TRIED]
+    return one_a_place(equations, scores)[:TRIED]
 
 
 def _improved(equations: NormalEquations, bare: Selection, arm_wide: tuple[int, ...]) -> Selection:
