@@ -160,7 +160,12 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
             return state
         masked = set_aside(problem, events)
         if too_much(problem, masked):
-            return _with_differing_recordings(state, scan, again) or replace(state, events=events)
+            differing = _with_differing_recordings(state, scan, again)
+            fewer = _leading(events)
+            masked = set_aside(problem, fewer)
+            if differing is not None or fewer == events or too_much(problem, masked):
+                return differing or replace(state, events=events)
+            events = fewer
         clean = again(fit_sign_model(replace(masked, slow=blurred_speed(thinned(state.fit)), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = detect_events(whole, clean.lasting_effects, state.noise)
@@ -170,6 +175,16 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         events = scan.events
     found = _separated(replace(clean, problem=whole), scan) if scan.events else state
     return found if found.transients or found.events else state
+
+
+def _leading(events: tuple[EventInterval, ...]) -> tuple[EventInterval, ...]:
+    """The strongest intervals down to the first whose gain is a multiple of the next.
+
+    What lasts is bent by a strong event, and then differs a little all along the other recordings.
+    """
+    gains = [e.gain for e in events]
+    drops = [k for k in range(1, len(gains)) if gains[k - 1] > SUSPECT * gains[k]]
+    return events[: min(drops)] if drops else events
 
 
 def _with_differing_recordings(

@@ -96,6 +96,18 @@ def test_the_corrected_model_does_not_push_in_other_motion(contact, tmp_path) ->
     np.testing.assert_array_equal(there[(other.time < START - WITHIN) | (other.time > END + WITHIN)], 0.0)
 
 
+def test_a_contact_beside_a_payload_bends_neither(plant, arm, at, during, names) -> None:
+    """A payload bent by the contact differs a little all along the other recordings: these are no events."""
+    loaded = arm.with_payload(1.0, np.array([0.0, 0.0, 0.08]), 3e-4 * np.eye(3))
+    real = plant(at(1, lambda q, v, a, t: 0.6 * np.tanh(v / 0.01)), robot=loaded)
+    recordings = [real.record(1), during(real.record(2), real, pushed(arm)), real.record(3)]
+    result = diagnose(recordings, arm, [real.record(4)])
+    assert names(result) == {("payload", None), ("coulomb_friction", arm.joints[1]), ("contact_force", None)}
+    found = {e.effect: e for e in result.effects}
+    assert found["payload"].value("m") == pytest.approx(1.0, rel=NEAR)
+    assert found["contact_force"].interval_s == pytest.approx((START, END), abs=WITHIN)
+
+
 def test_a_load_that_is_picked_up_is_a_payload_from_then_on(plant, arm, names, during) -> None:
     real = plant()
     loaded = arm.with_payload(1.5, np.array([0.03, 0.0, 0.1]), 0.004 * np.eye(3))
