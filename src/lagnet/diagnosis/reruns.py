@@ -158,14 +158,11 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
     for _ in range(LOOKS):
         if not events:
             return state
+        if too_much(problem, set_aside(problem, events)):
+            differing, events = _with_differing_recordings(state, scan, again), _leading(problem, events)
+            if differing is not None or not events:
+                return differing or replace(state, events=scan.events)
         masked = set_aside(problem, events)
-        if too_much(problem, masked):
-            differing = _with_differing_recordings(state, scan, again)
-            fewer = _leading(events)
-            masked = set_aside(problem, fewer)
-            if differing is not None or fewer == events or too_much(problem, masked):
-                return differing or replace(state, events=events)
-            events = fewer
         clean = again(fit_sign_model(replace(masked, slow=blurred_speed(thinned(state.fit)), straight=None, held=None)))
         whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
         scan = detect_events(whole, clean.lasting_effects, state.noise)
@@ -177,14 +174,15 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
     return found if found.transients or found.events else state
 
 
-def _leading(events: tuple[EventInterval, ...]) -> tuple[EventInterval, ...]:
-    """The strongest intervals down to the first whose gain is a multiple of the next.
+def _leading(problem: Problem, events: tuple[EventInterval, ...]) -> tuple[EventInterval, ...]:
+    """The strongest intervals down to the first whose gain is a multiple of the next; none where these are too much.
 
     What lasts is bent by a strong event, and then differs a little all along the other recordings.
     """
     gains = [e.gain for e in events]
-    drops = [k for k in range(1, len(gains)) if gains[k - 1] > SUSPECT * gains[k]]
-    return events[: min(drops)] if drops else events
+    drops = (k for k in range(1, len(gains)) if gains[k - 1] > SUSPECT * gains[k])
+    strongest = events[: next(drops, len(events))]
+    return () if too_much(problem, set_aside(problem, strongest)) else strongest
 
 
 def _with_differing_recordings(
