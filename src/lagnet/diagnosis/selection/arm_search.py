@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -168,12 +167,15 @@ def _score(
     equations: NormalEquations, arm_wide: Sequence[int], local: Sequence[Sequence[int]], fit: Fit, scales: Scales
 ) -> float:
     """log P(S) = −Σ_j n_j / (2 g_j) ln E_j − Σ_k penalty_k; −∞ where an arm-wide hypothesis is not physical."""
-    if not all(_is_physical(equations, i, fit) for i in arm_wide):
-        return -np.inf
+    library = equations.library
+    for i in arm_wide:
+        h = library.hypotheses[i]
+        if not h.law.plausible(fit.coefficients[i], dict(h.shape)):
+            return -np.inf
     floor = np.maximum.reduce([fit.sse, 1e-3 * scales.noise_power, 1e-12 * scales.torque_power])
     evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * np.log(np.maximum(floor, 1e-300)))
     chosen = (*arm_wide, *(i for own in local for i in own))
-    return float(evidence - sum(equations.limits.penalty(*equations.library.freedom[i]) for i in chosen))
+    return float(evidence - sum(equations.limits.penalty(*library.freedom[i]) for i in chosen))
 
 
 def refit_selection(equations: NormalEquations, found: Selection) -> Selection:
@@ -191,35 +193,16 @@ def total_score(equations: NormalEquations, arm_wide: tuple[int, ...], found: Se
 
 
 def _promising(equations: NormalEquations, best: Selection) -> list[int]:
-    """The arm-wide hypotheses with the largest gain beside the selected ones, one a place; physical ones come first."""
-    hypotheses, sigma = equations.library.hypotheses, _sigma(equations, best, best.scales)
-    taken = {hypotheses[i].place for i in best.arm_wide}
-    ranks: dict[int, tuple[bool, float]] = {}
+    """The arm-wide hypotheses with the largest gain Σ_j n_j / g_j ln(E_before / E_after) beside the selected ones."""
+    sigma = _sigma(equations, best, best.scales)
+    taken = {equations.library.hypotheses[i].place for i in best.arm_wide}
+    gains = {}
     for i in equations.library.reaching:
-        if hypotheses[i].place not in taken:
+        if equations.library.hypotheses[i].place not in taken:
             fit = fit_selection(equations, (*best.indices, i), sigma)
-            gain = _gain(equations, best, fit)
-            if gain > 0.0:
-                ranks[i] = _is_physical(equations, i, fit), gain
-    return one_a_place(equations, ranks)[:TRIED]
-
-
-def one_a_place(equations: NormalEquations, ranks: Mapping[int, Any]) -> list[int]:
-    """Of ranked hypotheses the best of each effect at its joint, best first."""
-    best = {equations.library.hypotheses[i].place: i for i in sorted(ranks, key=lambda i: ranks[i])}
-    return sorted(best.values(), key=lambda i: ranks[i], reverse=True)
-
-
-def _gain(equations: NormalEquations, best: Selection, fit: Fit) -> float:
-    """Σ_j n_j / g_j ln(E_before / E_after) [nats]."""
-    before, after = (np.maximum(f.sse, 1e-300) for f in (best.fit, fit))  # a joint that rests has no error
-    return float(np.sum(equations.samples / best.scales.inefficiency * np.log(before / after)))
-
-
-def _is_physical(equations: NormalEquations, index: int, fit: Fit) -> bool:
-    """Whether a hypothesis's coefficients are within its law's physical bounds."""
-    h = equations.library.hypotheses[index]
-    return h.law.plausible(fit.coefficients[index], dict(h.shape))
+            before, after = (np.maximum(f.sse, 1e-300) for f in (best.fit, fit))  # a joint that rests has no error
+            gains[i] = float(np.sum(equations.samples / best.scales.inefficiency * np.log(before / after)))
+    return sorted((i for i in gains if gains[i] > 0), key=lambda i: -gains[i])[:TRIED]
 
 
 def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:

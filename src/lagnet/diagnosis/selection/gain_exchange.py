@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import NormalEquations
-from lagnet.diagnosis.selection.arm_search import Selection, one_a_place, refit_selection, total_score, views_of
+from lagnet.diagnosis.selection.arm_search import Selection, refit_selection, total_score, views_of
 from lagnet.diagnosis.selection.joint_search import improve
 
 GAIN = "torque_gain"
@@ -24,7 +24,7 @@ def exchange_gains(equations: NormalEquations, found: Selection) -> Selection:
     """The selection, or one of larger log P without its gains, with one more arm-wide hypothesis or none.
 
     Where a gain returns beside the bodies, these are not what the gains stood for: a part of the torque alone is split
-    another way. Where log P does not decide, the selection stays.
+    another way.
     """
     gains = _gains(equations, found)
     if len(gains) < 2 or len(set(np.sign(gains))) > 1:
@@ -32,8 +32,7 @@ def exchange_gains(equations: NormalEquations, found: Selection) -> Selection:
     bare = _without_gains(equations, found)
     starts = [bare.arm_wide, *((*bare.arm_wide, i) for i in _instead(equations, bare))]
     tried = [_improved(equations, bare, arm_wide) for arm_wide in starts if arm_wide]
-    best = max((one for one in tried if not _gains(equations, one)), key=lambda one: one.score, default=found)
-    return best if best.score - found.score > equations.limits.tie_odds * np.log(10.0) else found
+    return max([found, *(one for one in tried if not _gains(equations, one))], key=lambda one: one.score)
 
 
 def _gains(equations: NormalEquations, found: Selection) -> list[float]:
@@ -56,7 +55,8 @@ def _instead(equations: NormalEquations, bare: Selection) -> list[int]:
     hypotheses, taken = equations.library.hypotheses, {equations.library.hypotheses[i].place for i in bare.arm_wide}
     free = [i for i in equations.library.reaching if hypotheses[i].place not in taken]
     scores = {i: total_score(equations, (*bare.arm_wide, i), bare) for i in free}
-    return one_a_place(equations, scores)[:TRIED]
+    best = {hypotheses[i].place: i for i in sorted(scores, key=lambda i: scores[i])}
+    return sorted(best.values(), key=lambda i: -scores[i])[:TRIED]
 
 
 def _improved(equations: NormalEquations, bare: Selection, arm_wide: tuple[int, ...]) -> Selection:
