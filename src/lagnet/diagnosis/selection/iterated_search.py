@@ -49,7 +49,7 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquation
             break
         problem = replace(problem, known=known)
         rounds.append((problem, *_search_once(problem, noise, (equations.library, found))))
-    counted = [*rounds[:1], *(r for r in rounds[1:] if _bears_its_columns(*r))]
+    counted = [*rounds[:1], *(r for r in rounds[1:] if _bears_its_columns(r[0], _known(r[1].library, r[2])))]
     return max(reversed(counted), key=lambda r: r[2].score)
 
 
@@ -90,13 +90,12 @@ def _known(library: Library, found: Selection) -> tuple[NamedEffect, ...]:
     return tuple(e for e, law in effects if law.stage == "body" and law.reaches_all and law.instantaneous)
 
 
-def _bears_its_columns(problem: Problem, equations: NormalEquations, found: Selection) -> bool:
-    """Whether Σ_j ‖τ_found − τ_known‖² / ‖τ‖² < Σ_j ‖τ_nominal − τ_known‖² / ‖τ‖², or no body was known."""
+def _bears_its_columns(problem: Problem, selected: tuple[NamedEffect, ...]) -> bool:
+    """Whether Σ_j ‖τ_selected − τ_known‖² / ‖τ‖² < Σ_j ‖τ_nominal − τ_known‖² / ‖τ‖², or no body was known."""
     if not problem.known:
         return True
     motion = problem.summary()
-    bodies = _known(equations.library, found)
-    known, now = (load_before(motion, effects, "signal") for effects in (problem.known, bodies))
+    known, now = (load_before(motion, effects, "signal") for effects in (problem.known, selected))
     scale = np.maximum(np.mean(motion.load**2, axis=0), 1e-300)
     apart, whole = (np.sum(np.mean((other - known) ** 2, axis=0) / scale) for other in (now, motion.load))
     return bool(apart < whole)
