@@ -67,7 +67,8 @@ def blocks_of(problem: Problem, pieces: Sequence[Segment]) -> list[list[np.ndarr
 class GaussNewton:
     """A refit's data: segments of the problem, the noise σ of each joint and the place of each coordinate.
 
-    `held`, shape (k,), tells which coordinates stay as they are given, without an interval.
+    `held`, shape (k,), tells which coordinates stay as they are given, without an interval; `beside` what acts as well,
+    and is not refitted.
     """
 
     problem: Problem
@@ -75,6 +76,7 @@ class GaussNewton:
     sigma: np.ndarray
     slots: Slots
     held: np.ndarray
+    beside: tuple[NamedEffect, ...] = ()
     known: dict[bytes, tuple[list[np.ndarray], list[np.ndarray]]] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
@@ -84,7 +86,7 @@ class GaussNewton:
 
     def residuals(self, x: np.ndarray) -> list[np.ndarray]:
         """e = F(τ − τ_nominal − Σ τ_effect(x)) / σ of each segment, shape (len(keep), dof)."""
-        effects = self.slots.named(x)
+        effects = (*self.beside, *self.slots.named(x))
         out = []
         for piece, motion in zip(self.pieces, self.motions, strict=True):
             residual = self.problem.reduce(piece, piece.tau - torque_with(motion, effects))
@@ -102,7 +104,8 @@ class GaussNewton:
 
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
-        sums = [Superposition(motion, self.slots.named(x)) for motion in self.motions]
+        effects = (*self.beside, *self.slots.named(x))
+        sums = [Superposition(motion, effects) for motion in self.motions]
         moves = [self._moved(x, int(i)) for i in np.flatnonzero(free)]
         return [self._slopes(*pair, moves) for pair in zip(self.pieces, sums, strict=True)]
 
@@ -113,7 +116,7 @@ class GaussNewton:
             return step, None, None
         before, after = self.slots.named(x), self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
         changed = [n for n, (a, b) in enumerate(zip(before, after, strict=True)) if a.key != b.key]
-        return (step, changed[0], after[changed[0]]) if changed else (step, None, None)
+        return (step, len(self.beside) + changed[0], after[changed[0]]) if changed else (step, None, None)
 
     def _slopes(self, piece: Segment, total: Superposition, moves: Sequence[tuple]) -> np.ndarray:
         """∂e/∂x of one segment; all its columns are filtered together."""
@@ -184,10 +187,14 @@ class GaussNewton:
 
 
 def start_gauss_newton(
-    problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray, choices_stay: bool = True
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    sigma: np.ndarray,
+    choices_stay: bool = True,
+    beside: Sequence[NamedEffect] = (),
 ) -> tuple[GaussNewton, np.ndarray]:
     """The work of a refit, and the coordinates of the effects as given."""
     parts = [e.coordinates() for e in effects]
     slots = Slots(tuple(effects), np.concatenate([[0], np.cumsum([p.size for p in parts])]))
     held = slots.chosen() & choices_stay
-    return GaussNewton(problem, spread(problem.fit), sigma, slots, held), np.concatenate(parts)
+    return GaussNewton(problem, spread(problem.fit), sigma, slots, held, tuple(beside)), np.concatenate(parts)

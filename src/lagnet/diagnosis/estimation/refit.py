@@ -55,7 +55,13 @@ def tangent_at(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarr
     return Tangent(work.pieces, residuals, jacobians, np.asarray(block_diag(*blocks)))
 
 
-def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray, choices_stay: bool = True) -> Refit:
+def refit(
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    sigma: np.ndarray,
+    choices_stay: bool = True,
+    beside: Sequence[NamedEffect] = (),
+) -> Refit:
     """Gauss–Newton from the search's values, joints weighted by 1/σ².
 
     Args:
@@ -63,10 +69,11 @@ def refit(problem: Problem, effects: Sequence[NamedEffect], sigma: np.ndarray, c
         effects: with starting values.
         sigma: shape (dof,), residual of each joint [N m].
         choices_stay: whether values of special cases, such as a ratio of one, are left as they are.
+        beside: effects that act as well and stay as they are.
     """
     if not effects:
         return Refit((), (), np.zeros((0, 0)))
-    work, start = start_gauss_newton(problem, effects, sigma, choices_stay)
+    work, start = start_gauss_newton(problem, effects, sigma, choices_stay, beside)
     slots = work.slots
     x = work.descend(np.clip(start, *slots.bounds()), np.ones(start.size, dtype=bool))
     x = with_physical_bodies(work, x)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.gauss_newton import start_gauss_newton
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval
 from lagnet.diagnosis.problem.problem import Problem, Segment
@@ -16,7 +17,7 @@ from lagnet.diagnosis.transients.detection import Scan
 from lagnet.effects.effect import Values
 from lagnet.effects.external.contact_force import FORCE, POINT, ContactForce
 from lagnet.effects.inertia.payload import INERTIA, Payload
-from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+from lagnet.models.corrected.named_effects import NamedEffect
 
 AROUND = 3.0  # [s] before and after an event on which its edges are fitted
 BLOCKS = 4  # parts of an event that predict one another
@@ -65,50 +66,92 @@ class EventFit:
         return (self.rival,) if self.rival and self.odds is not None and self.odds < self.tie_odds else ()
 
 
+@dataclass(frozen=True, eq=False)
+class _Near:
+    """The segments around an event, and what acts always.
+
+    A load on a tilted base, or under a torque that saturates, is no sum of both: a law is fitted beside what persists.
+    """
+
+    problem: Problem
+    persistent: tuple[NamedEffect, ...]
+
+    def residual(self, *laws: NamedEffect) -> RecordingResidual:
+        """r with the laws beside what acts always."""
+        (one,) = residual_by_recording(self.problem, self.problem.fit, (*self.persistent, *laws))
+        return one
+
+    def fitted(self, law: NamedEffect, sigma: np.ndarray) -> Refit:
+        """The law refitted beside what acts always, which stays."""
+        return refit(self.problem, (law,), sigma, beside=self.persistent)
+
+    def parts_unseen(self, law: NamedEffect) -> tuple[float, float]:
+        """nMSE of the parts of an event, each predicted from the others, without the law and with it.
+
+        In a step from the fit only what the torque is linear in changes, the force or the mass and its first moment.
+        """
+        scale = self.problem.scale
+        work, x = start_gauss_newton(self.problem, (law,), scale, beside=self.persistent)
+        free = np.arange(x.size) < (len(FORCE) if law.effect == ContactForce.name else 1 + len(POINT))
+        left, slopes = np.concatenate(work.residuals(x)), np.concatenate(work.jacobian(x, free))
+        (without,) = residual_by_recording(self.problem, work.pieces, self.persistent)
+        rows = _well_inside(without, law, SMEAR / self.problem.bandwidth)
+        unseen = predicted_from_the_others(left[rows], slopes[rows])
+        count = np.maximum(without.valid[rows].sum(axis=0), 1)
+        before = without.residual[rows] * without.valid[rows] / scale
+        nothing, with_it = (np.sum(r**2, axis=0) / count for r in (before, unseen))
+        moved = nothing > self.problem.limits.least_ratio * with_it
+        at = np.flatnonzero(moved) if moved.any() else np.arange(len(nothing))
+        return float(np.mean(nothing[at])), float(np.mean(with_it[at]))
+
+    def misfit(self, law: NamedEffect, sigma: np.ndarray) -> float:
+        """Half the weighted squared error [nats]."""
+        series = self.residual(law)
+        return 0.5 * float(np.sum((series.residual * series.valid / sigma) ** 2))
+
+
 def fit_event(problem: Problem, persistent: Sequence[NamedEffect], event: EventInterval, scan: Scan) -> EventFit:
     """argmax of the likelihood of a contact and of a load on an event interval of a fitted recording.
 
     Args:
         problem: with the samples of the event valid.
-        lasting: effects that act always.
+        persistent: effects that act always.
     """
     near = _near(problem, persistent, event)
     sigma = np.sqrt(scan.power)
-    fits = [refit(near, (start,), sigma) for start in _starts(near, event, scan.power)]
+    series = near.residual()
+    fits = [near.fitted(start, sigma) for start in _starts(near.problem, series, event, scan.power)]
+    penalties = [problem.limits.penalty(f.correlations.shape[0] - 2, 0) for f in fits]
     costs = [
-        _misfit(near, f, sigma) / scan.inflation + problem.limits.penalty(f.correlations.shape[0] - 2, 0) for f in fits
+        near.misfit(f.effects[0], sigma) / scan.inflation + penalty for f, penalty in zip(fits, penalties, strict=True)
     ]
     order = np.argsort(costs)
     best = fits[order[0]].effects[0]
     rival = fits[order[1]].effects[0].effect if len(fits) > 1 else None
     odds = float((costs[order[1]] - costs[order[0]]) / np.log(10.0)) if len(fits) > 1 else None
-    (series,) = residual_by_recording(near, near.fit, ())
     return EventFit(
         best,
         odds,
         rival,
-        *_residual_power(near, series, best, scan),
-        *_unseen(near, series, best),
-        near.limits.tie_odds,
+        *_residual_power(series, near.residual(best), best, scan),
+        *near.parts_unseen(best),
+        problem.limits.tie_odds,
     )
 
 
-def _near(problem: Problem, persistent: Sequence[NamedEffect], event: EventInterval) -> Problem:
-    """The segments around an event after the torque of persistent effects is subtracted."""
+def _near(problem: Problem, persistent: Sequence[NamedEffect], event: EventInterval) -> _Near:
     low, high = event.start - AROUND, event.end + AROUND
     pieces = [p for p in problem.fit if p.recording == event.recording and p.time[0] < high and low < p.time[-1]]
-    return replace(problem, fit=tuple(_cleared(problem, p, persistent, low, high) for p in pieces))
+    return _Near(replace(problem, fit=tuple(_between(p, low, high) for p in pieces)), tuple(persistent))
 
 
-def _cleared(problem: Problem, piece: Segment, persistent: Sequence[NamedEffect], low: float, high: float) -> Segment:
-    lasting_torque = torque_with(piece.motion(problem), persistent) - piece.load
+def _between(piece: Segment, low: float, high: float) -> Segment:
     inside = (piece.time[piece.keep] >= low) & (piece.time[piece.keep] <= high)
-    return replace(piece, tau=piece.tau - lasting_torque, counts=piece.counts & inside[:, None])
+    return replace(piece, counts=piece.counts & inside[:, None])
 
 
-def _starts(near: Problem, event: EventInterval, power: np.ndarray) -> list[NamedEffect]:
+def _starts(near: Problem, series: RecordingResidual, event: EventInterval, power: np.ndarray) -> list[NamedEffect]:
     """A contact, and a load where the force points as gravity would have it."""
-    (series,) = residual_by_recording(near, near.fit, ())
     rows = _inside(series, event.start, event.end)
     law, motion = ContactForce(), _cut(series, rows).motion
     weight = (series.valid[rows] / power)[:, :, None]
@@ -147,12 +190,6 @@ def _solve(columns: np.ndarray, weighted: np.ndarray, residual: np.ndarray) -> n
     return ridge_solve(gram, np.einsum("njk,nj->k", weighted, residual), RIDGE)
 
 
-def _misfit(near: Problem, fitted: Refit, sigma: np.ndarray) -> float:
-    """Half the weighted squared error with the fitted effects [nats]."""
-    (series,) = residual_by_recording(near, near.fit, fitted.effects)
-    return 0.5 * float(np.sum((series.residual * series.valid / sigma) ** 2))
-
-
 def _inside(series: RecordingResidual, start: float, end: float) -> np.ndarray:
     return np.flatnonzero((series.time >= start) & (series.time <= end))
 
@@ -164,13 +201,12 @@ def _cut(series: RecordingResidual, rows: np.ndarray) -> RecordingResidual:
 
 
 def _residual_power(
-    near: Problem, series: RecordingResidual, effect: NamedEffect, scan: Scan
+    series: RecordingResidual, after: RecordingResidual, effect: NamedEffect, scan: Scan
 ) -> tuple[float, float, np.ndarray]:
     """E(law)/E(0) inside the event, E(law) over the usual power, and the gain at each joint [nats].
 
     With the usual power as the noise, a joint that is usually almost still would gain more than all others together.
     """
-    (after,) = residual_by_recording(near, near.fit, (effect,))
     start, end = effect.interval or (0.0, 0.0)
     rows = _inside(series, start, end)
     counts = series.valid[rows].sum(axis=0)
@@ -183,30 +219,22 @@ def _residual_power(
     return share, float(after_power.sum()) / noise, gains
 
 
-def _unseen(near: Problem, series: RecordingResidual, effect: NamedEffect) -> tuple[float, float]:
-    """nMSE of the parts of an event, each predicted from the others."""
+def _well_inside(series: RecordingResidual, effect: NamedEffect, slack: float) -> np.ndarray:
+    """Samples of an event less those near its edges that the filter blurs, where enough are left."""
     start, end = effect.interval or (0.0, 0.0)
-    slack = SMEAR / near.bandwidth
     inner = _inside(series, start + slack, end - slack)
-    part = _cut(series, inner if inner.size > 2 * BLOCKS else _inside(series, start, end))
-    columns, residual = _columns(effect, part)
-    weight = part.valid / near.scale**2
-    error = np.zeros_like(residual)
+    return inner if inner.size > 2 * BLOCKS else _inside(series, start, end)
+
+
+def predicted_from_the_others(residual: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """What each part leaves after one step of Gauss–Newton on all other parts, shape (n, dof).
+
+    Args:
+        residual: shape (n, dof), of the fit.
+        slopes: shape (n, dof, k), its derivatives.
+    """
+    out = np.zeros_like(residual)
     for rows in np.array_split(np.arange(len(residual)), BLOCKS):
         others = np.setdiff1d(np.arange(len(residual)), rows)
-        theta = _solve(columns[others], columns[others] * weight[others][:, :, None], residual[others])
-        error[rows] = residual[rows] - columns[rows] @ theta
-    count = np.maximum(part.valid.sum(axis=0), 1)
-    without, with_it = (np.sum((x * part.valid) ** 2, axis=0) / count / near.scale**2 for x in (part.residual, error))
-    moved = without > near.limits.least_ratio * with_it
-    at = np.flatnonzero(moved) if moved.any() else np.arange(len(without))
-    return float(np.mean(without[at])), float(np.mean(with_it[at]))
-
-
-def _columns(effect: NamedEffect, part: RecordingResidual) -> tuple[np.ndarray, np.ndarray]:
-    """Columns of the force, or of mass and first moment, with all other parameters of the law as fitted."""
-    if effect.effect == ContactForce.name:
-        return ContactForce().columns(part.motion, None, effect.values), part.residual
-    law = Payload()
-    columns = law.columns(part.motion, None, {})
-    return columns[:, :, :4], part.residual - columns[:, :, 4:] @ law.coordinates(effect.values)[4:]
+        out[rows] = residual[rows] - slopes[rows] @ _solve(slopes[others], slopes[others], residual[others])
+    return out

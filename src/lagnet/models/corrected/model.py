@@ -117,13 +117,14 @@ class CorrectedModel:
     def inverse_dynamics(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """τ of samples without order, shape (n, dof) [N m]; delays and hysteresis need `torque_along`."""
         time = UNORDERED * np.arange(len(q))
-        ordered = [e for e in self.acting if effect_named(e.effect).instantaneous and e.interval is None]
+        lasting = [e for e in self.acting if e.interval is None]
+        ordered = [e for e in lasting if effect_named(e.effect).instantaneous]
         model = self._written or self.nominal
         if self._written is not None:
             ordered = [e for e in ordered if e.effect not in CHANGES_OF_BODIES]
         motion = self._motion(time, q, v, a, model.inverse_dynamics(q, v, a))
         if self._written is not None:
-            motion = motion.with_load(motion.load + shifted_weight(motion, self.acting))
+            motion = motion.with_load(motion.load + shifted_weight(motion, lasting))
         return torque_with(motion, ordered) + self._beside(motion, ordered, in_order=False)
 
     def torque_along(self, time: Samples, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:

@@ -10,9 +10,9 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
+from lagnet.models.corrected.presence import presence
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.models.corrected.tilted_bodies import tilted_weight
-from lagnet.recordings.sampling import median_step
 from lagnet.types import Trajectory
 
 EDGES = ("t0", "t1")  # start and end of an effect on an interval
@@ -76,29 +76,20 @@ class NamedEffect:
 
     def added_at(self, motion: Motion) -> dict[int, np.ndarray]:
         """r_k along a motion by joint, each of shape (n,) [N m]; joints that are not in it have none."""
-        if self.recording is not None and self.recording != motion.recording:
+        share = presence(motion, self)
+        if not np.any(share):
             return {}
         torque = effect_named(self.effect).torque(motion, self.joint, self.values)
         if torque.ndim == 1 and self.joint is not None:
             found = {self.joint: torque}
         else:
             found = {j: torque[:, j] for j in range(motion.n_dof) if torque[:, j].any()}
-        if self.interval is None:
-            return found
-        inside = _inside(motion.time, self.interval)
-        return {j: x * inside for j, x in found.items()}
+        return found if self.interval is None else {j: x * share for j, x in found.items()}
 
 
 def transients_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
     """Those that act for a while, or in one recording, alone."""
     return tuple(e for e in effects if e.interval is not None or e.recording is not None)
-
-
-def _inside(time: np.ndarray, interval: tuple[float, float]) -> np.ndarray:
-    """1 from t0 to t1, shape (n,), falling to 0 over one sample outside: a slope makes t0 and t1 differentiable."""
-    step = median_step(time)
-    since_start, since_end = ((time - edge) / step for edge in interval)
-    return np.clip(since_start + 1.0, 0.0, 1.0) * np.clip(1.0 - since_end, 0.0, 1.0)
 
 
 def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:

@@ -30,7 +30,7 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
     """∂G/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
     tilts = [e for e in effects if e.effect == TILT]
     carried = [e for e in effects if e.joint is None or e.joint >= joint]  # a joint turns none of the links before it
-    bodies = [e for e in carried if e.effect in BODIES and e.interval is None]
+    bodies = [e for e in carried if e.effect in BODIES]
     if not tilts and not bodies:
         return 0.0
     change = change_of_gravity(motion, tilts)

@@ -10,14 +10,15 @@ import numpy as np
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.gravity_tilt import GravityTilt, is_large
 from lagnet.effects.motion import Motion
+from lagnet.models.corrected.presence import Present, presence
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
 TILT_LAW = GravityTilt()
 
 
 @runtime_checkable
-class Named(Protocol):
-    """An effect with its place and parameters."""
+class Named(Present, Protocol):
+    """An effect with its place, its parameters and when it acts."""
 
     @property
     def effect(self) -> str: ...
@@ -25,17 +26,14 @@ class Named(Protocol):
     def joint(self) -> int | None: ...
     @property
     def values(self) -> Mapping[str, float]: ...
-    @property
-    def interval(self) -> tuple[float, float] | None: ...
 
 
 def tilted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
     """Holding torque of payloads and link changes in the difference of gravity, shape (n, dof) [N m]; 0 without both.
 
     Either effect alone is computed with the bodies and the gravity of the nominal model, which leaves this product out.
-    Bodies that are carried for a while only are left out.
     """
-    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
+    bodies = [e for e in effects if e.effect in BODIES]
     tilts = [e for e in effects if e.effect == TILT]
     if not bodies or not tilts:
         return 0.0
@@ -84,7 +82,7 @@ def weight_in_each(motion: Motion, effects: Sequence[Named], changes: np.ndarray
     Returns:
         Shape (n, dof, k) [N m]; 0 without payload and link change.
     """
-    bodies = [e for e in effects if e.effect in BODIES and e.interval is None]
+    bodies = [e for e in effects if e.effect in BODIES]
     if not bodies:
         return 0.0
     return np.stack(
@@ -99,7 +97,12 @@ def change_of_gravity(motion: Motion, tilts: Sequence[Named]) -> np.ndarray:
 
 
 def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
-    """Holding torque of a payload or link change in a field of gravity, shape (n, dof) [N m]."""
+    """Holding torque of a payload or link change in a field of gravity while it is there, shape (n, dof) [N m]."""
+    share = np.asarray(presence(motion, body))[..., None]
+    return _weight(motion, body, gravity) * share if np.any(share) else np.zeros_like(motion.load)
+
+
+def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = motion.n_dof - 1 if body.joint is None else body.joint
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
     alone = None if f"weights_{link}" in motion.cache else motion.body_alone(link, weights)
