@@ -19,6 +19,7 @@ from lagnet.rigid_body.inertia import (
 
 CONSISTENCY = 1e-7  # of the explained error, the least weight of the distance to a prior body
 WEIGHTS = 10.0 ** np.arange(4.0, -0.5, -0.5)  # times the least: from near the prior to near the data
+REACH = 0.3  # [m] from the last joint, within which a load usually has its centre of mass
 WITHIN = float(chi2.ppf(0.95, 10))  # squared error [noise variances] by which data do not distinguish two bodies
 
 
@@ -64,12 +65,13 @@ def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:
 def _prior(base: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """A real body near the wanted one: the modelled link made rounder, or a ball of the wanted mass where that is.
 
-    Models know the mass of a link better than its shape. Beside a slender link a body of its mass and of other moments
-    would be further off than one many times as heavy.
+    A mass that came out near zero says nothing of a load whose first moment is known: the ball is so heavy that its
+    centre lies within reach. Models know the mass of a link better than its shape. Beside a slender link a body of its
+    mass and of other moments would be further off than one many times as heavy.
     """
     if is_physically_consistent(base):
         body = pseudo_inertia(base)
         body[:3, :3] += np.trace(body[:3, :3]) / 3.0 * np.eye(3)
         return from_pseudo_inertia(body)
-    mass = max(float(wanted[0]), 1e-3)
+    mass = max(float(wanted[0]), float(np.linalg.norm(wanted[1:4])) / REACH, 1e-3)
     return parameters_of_body(mass, wanted[1:4] / mass, 0.01 * mass * np.eye(3))

@@ -1,4 +1,4 @@
-"""δ_j ∂G/∂q_j: what encoder offsets have only together with a tilted base or changed bodies, G their holding torque."""
+"""δ_j ∂τ/∂q_j: what encoder offsets have only together with a tilted base or changed bodies, τ the torque of these."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.effects.motion import Motion
 from lagnet.effects.signal.encoder_offset import EncoderOffset
-from lagnet.models.corrected.tilted_bodies import BODIES, TILT, Named, change_of_gravity, weight
+from lagnet.models.corrected.tilted_bodies import BODIES, TILT, Named, carried_torque, change_of_gravity
 
 OFFSET = EncoderOffset.name
 OFFSET_LAW = EncoderOffset()
@@ -17,7 +17,7 @@ STEP = 1e-3  # [rad] of the difference quotient
 
 
 def shifted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
-    """Holding torque of tilt, payloads and link changes that encoder offsets add, shape (n, dof) [N m]; 0 without both.
+    """Torque of tilt, payloads and link changes that encoder offsets add, shape (n, dof) [N m]; 0 without both.
 
     Either effect alone is computed with the bodies, the gravity and the angles of the nominal model, which leaves this
     product out. It is linear in the offset: what is left is of third order.
@@ -27,21 +27,21 @@ def shifted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | flo
 
 
 def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
-    """∂G/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
+    """∂τ/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
     tilts = [e for e in effects if e.effect == TILT]
     carried = [e for e in effects if e.joint is None or e.joint >= joint]  # a joint turns none of the links before it
     bodies = [e for e in carried if e.effect in BODIES]
     if not tilts and not bodies:
         return 0.0
     change = change_of_gravity(motion, tilts)
-    field = np.asarray(motion.bodies.gravity, dtype=float) + change
     ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
-    more, less = (_weight(p, bodies, field) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
+    more, less = (_torque(p, bodies, change) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
     return (more - less) / (2.0 * STEP)
 
 
-def _weight(motion: Motion, bodies: Sequence[Named], field: np.ndarray) -> np.ndarray:
-    return sum((weight(motion, b, field) for b in bodies), np.zeros_like(motion.load))
+def _torque(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.ndarray:
+    """Torque of bodies in the field of the model and a change of it, shape (n, dof) [N m]."""
+    return sum((carried_torque(motion, b, change) for b in bodies), np.zeros_like(motion.load))
 
 
 def _turned(motion: Motion) -> np.ndarray:

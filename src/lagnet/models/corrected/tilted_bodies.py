@@ -102,6 +102,22 @@ def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     return _weight(motion, body, gravity) * share if np.any(share) else np.zeros_like(motion.load)
 
 
+def carried_torque(motion: Motion, body: Named, change: np.ndarray) -> np.ndarray:
+    """Torque of a payload or link change in motion while it is there, shape (n, dof) [N m].
+
+    Args:
+        motion: whose.
+        body: carried.
+        change: shape (3,), of gravity against that of the model [m/s²].
+    """
+    share = np.asarray(presence(motion, body))[..., None]
+    if not np.any(share):
+        return np.zeros_like(motion.load)
+    link = motion.n_dof - 1 if body.joint is None else body.joint
+    moving = motion.body_torque(link, np.asarray(effect_named(body.effect).coordinates(body.values)))
+    return moving * share + (weight(motion, body, change) if change.any() else 0.0)
+
+
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = motion.n_dof - 1 if body.joint is None else body.joint
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
