@@ -50,3 +50,17 @@ def test_nothing_is_added_without_tilt_and_bodies(ur5, poses) -> None:
     still = np.zeros_like(poses)
     motion = Motion(np.arange(len(poses)) * 0.01, poses, still, still, still, SLOW, ur5)
     assert np.all(np.asarray(weight_slope(motion, JOINT, (OFFSET,))) == 0.0)
+
+
+@pytest.mark.parametrize("others", [BODIES[:1], BODIES, (TILT, *BODIES)])
+def test_the_product_holds_in_motion(ur5, others) -> None:
+    """At a vertical axis a load shows by its inertia alone, which depends on the angle that the encoder misses."""
+    q, v, a = (np.random.default_rng(k).uniform(-2.0, 2.0, (40, 6)) for k in range(3))
+    moved = q.copy()
+    moved[:, JOINT] += DELTA
+    expected = CorrectedModel(ur5, others, SLOW).bodies().inverse_dynamics(moved, v, a)
+    torque = [
+        CorrectedModel(ur5, e, SLOW).inverse_dynamics(q, v, a) for e in ((*others, OFFSET), others, (OFFSET,), ())
+    ]
+    apart = np.abs([torque[0] - expected, torque[1] + torque[2] - torque[3] - expected])
+    assert np.all(apart[0].max(axis=0)[:3] < 0.1 * apart[1].max(axis=0)[:3])

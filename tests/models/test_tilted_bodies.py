@@ -48,3 +48,18 @@ def test_calibrated_and_then_diagnosed_again_is_the_same_arm(ur5, samples, first
     expected = CorrectedModel(ur5, (*first, *second), SLOW).bodies().inverse_dynamics(*samples)
     np.testing.assert_allclose(model.inverse_dynamics(*samples), expected, rtol=0, atol=1e3 * IDENTITY)
     np.testing.assert_allclose(model.gravity, CorrectedModel(ur5, (TILT,), SLOW).bodies().gravity, atol=IDENTITY)
+
+
+def test_a_body_that_is_carried_for_a_while_weighs_in_the_tilted_field_then_and_in_its_recording(ur5) -> None:
+    """Inside the interval the arm is one with all of it written into it, before and after one without the load."""
+    time = 0.01 * np.arange(60)
+    q, v, a = (np.random.default_rng(k).uniform(-2.0, 2.0, (60, 6)) for k in range(3))
+    carried = NamedEffect("payload", None, PAYLOAD, (time[20], time[40]), 1)
+    model = CorrectedModel(ur5, (TILT, carried), SLOW, recording=1)
+    elsewhere = CorrectedModel(ur5, (TILT, carried), SLOW, recording=0)
+    with_it, without = (CorrectedModel(ur5, e, SLOW).bodies() for e in ((TILT, BODIES[0]), (TILT,)))
+    inside = ((time >= time[20]) & (time <= time[40]))[:, None]
+    expected = np.where(inside, with_it.inverse_dynamics(q, v, a), without.inverse_dynamics(q, v, a))
+    exact = {"rtol": 0, "atol": 1e3 * IDENTITY}
+    np.testing.assert_allclose(model.torque_along(time, q, v, a), expected, **exact)
+    np.testing.assert_allclose(elsewhere.torque_along(time, q, v, a), without.inverse_dynamics(q, v, a), **exact)

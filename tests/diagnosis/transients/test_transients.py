@@ -163,3 +163,20 @@ def test_an_interval_belongs_to_one_recording(arm) -> None:
     assert moved.interval == (1.25, 2.25)
     assert moved.recording == 1
     assert moved.parameters()["t1"] == 2.25
+
+
+@pytest.mark.slow
+def test_a_load_carried_for_a_while_on_a_tilted_base_weighs_in_the_true_field(plant, arm, names, during) -> None:
+    gravity = 9.81 * np.array([0.14, -0.11, 0.0])
+    tilted = arm.with_gravity(gravity - np.array([0.0, 0.0, np.sqrt(9.81**2 - gravity @ gravity)]))
+    loaded = tilted.with_payload(1.0, np.array([0.05, 0.08, 0.15]), 0.004 * np.eye(3))
+    real = plant(robot=tilted)
+
+    def load(q, v, a):
+        return loaded.inverse_dynamics(q, v, a) - tilted.inverse_dynamics(q, v, a)
+
+    result = diagnose([real.record(1), during(real.record(2), real, load)], arm, [real.record(3)])
+    assert names(result) == {("gravity_tilt", None), ("payload", None)}
+    found = next(e for e in result.effects if e.effect == "payload")
+    assert found.value("m") == pytest.approx(1.0, rel=0.02)
+    assert found.interval_s == pytest.approx((START, END), abs=WITHIN)
