@@ -7,22 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.estimation.gauss_newton import start_gauss_newton
-from lagnet.diagnosis.estimation.refit import Refit, refit
-from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval
-from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.diagnosis.problem.residuals import RecordingResidual, residual_by_recording
-from lagnet.diagnosis.regression.normal_equations import ridge_solve
+from lagnet.diagnosis.problem.intervals import EventInterval
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.problem.residuals import RecordingResidual
 from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.surroundings import around, inside, solve
 from lagnet.effects.effect import Values
 from lagnet.effects.external.contact_force import FORCE, POINT, ContactForce
 from lagnet.effects.inertia.payload import INERTIA, Payload
 from lagnet.models.corrected.named_effects import NamedEffect
 
-AROUND = 3.0  # [s] before and after an event on which its edges are fitted
-BLOCKS = 4  # parts of an event that predict one another
 RADIUS = 0.03  # [m] of gyration from which the inertia of a load is fitted
-RIDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,50 +61,6 @@ class EventFit:
         return (self.rival,) if self.rival and self.odds is not None and self.odds < self.tie_odds else ()
 
 
-@dataclass(frozen=True, eq=False)
-class _Near:
-    """The segments around an event, and what acts always.
-
-    A load on a tilted base, or under a torque that saturates, is no sum of both: a law is fitted beside what persists.
-    """
-
-    problem: Problem
-    persistent: tuple[NamedEffect, ...]
-
-    def residual(self, *laws: NamedEffect) -> RecordingResidual:
-        """r with the laws beside what acts always."""
-        (one,) = residual_by_recording(self.problem, self.problem.fit, (*self.persistent, *laws))
-        return one
-
-    def fitted(self, law: NamedEffect, sigma: np.ndarray) -> Refit:
-        """The law refitted beside what acts always, which stays."""
-        return refit(self.problem, (law,), sigma, beside=self.persistent)
-
-    def parts_unseen(self, law: NamedEffect) -> tuple[float, float]:
-        """nMSE of the parts of an event, each predicted from the others, without the law and with it.
-
-        In a step from the fit only what the torque is linear in changes, the force or the mass and its first moment.
-        """
-        scale = self.problem.scale
-        work, x = start_gauss_newton(self.problem, (law,), scale, beside=self.persistent)
-        free = np.arange(x.size) < (len(FORCE) if law.effect == ContactForce.name else 1 + len(POINT))
-        left, slopes = np.concatenate(work.residuals(x)), np.concatenate(work.jacobian(x, free))
-        (without,) = residual_by_recording(self.problem, work.pieces, self.persistent)
-        rows = _well_inside(without, law, SMEAR / self.problem.bandwidth)
-        unseen = predicted_from_the_others(left[rows], slopes[rows])
-        count = np.maximum(without.valid[rows].sum(axis=0), 1)
-        before = without.residual[rows] * without.valid[rows] / scale
-        nothing, with_it = (np.sum(r**2, axis=0) / count for r in (before, unseen))
-        moved = nothing > self.problem.limits.least_ratio * with_it
-        at = np.flatnonzero(moved) if moved.any() else np.arange(len(nothing))
-        return float(np.mean(nothing[at])), float(np.mean(with_it[at]))
-
-    def misfit(self, law: NamedEffect, sigma: np.ndarray) -> float:
-        """Half the weighted squared error [nats]."""
-        series = self.residual(law)
-        return 0.5 * float(np.sum((series.residual * series.valid / sigma) ** 2))
-
-
 def fit_event(problem: Problem, persistent: Sequence[NamedEffect], event: EventInterval, scan: Scan) -> EventFit:
     """argmax of the likelihood of a contact and of a load on an event interval of a fitted recording.
 
@@ -117,7 +68,7 @@ def fit_event(problem: Problem, persistent: Sequence[NamedEffect], event: EventI
         problem: with the samples of the event valid.
         persistent: effects that act always.
     """
-    near = _near(problem, persistent, event)
+    near = around(problem, persistent, event)
     sigma = np.sqrt(scan.power)
     series = near.residual()
     fits = [near.fitted(start, sigma) for start in _starts(near.problem, series, event, scan.power)]
@@ -139,24 +90,13 @@ def fit_event(problem: Problem, persistent: Sequence[NamedEffect], event: EventI
     )
 
 
-def _near(problem: Problem, persistent: Sequence[NamedEffect], event: EventInterval) -> _Near:
-    low, high = event.start - AROUND, event.end + AROUND
-    pieces = [p for p in problem.fit if p.recording == event.recording and p.time[0] < high and low < p.time[-1]]
-    return _Near(replace(problem, fit=tuple(_between(p, low, high) for p in pieces)), tuple(persistent))
-
-
-def _between(piece: Segment, low: float, high: float) -> Segment:
-    inside = (piece.time[piece.keep] >= low) & (piece.time[piece.keep] <= high)
-    return replace(piece, counts=piece.counts & inside[:, None])
-
-
 def _starts(near: Problem, series: RecordingResidual, event: EventInterval, power: np.ndarray) -> list[NamedEffect]:
     """A contact, and a load where the force points as gravity would have it."""
-    rows = _inside(series, event.start, event.end)
+    rows = inside(series, event.start, event.end)
     law, motion = ContactForce(), _cut(series, rows).motion
     weight = (series.valid[rows] / power)[:, :, None]
     columns = law.relaxed(motion)
-    contact = law.nearest(_solve(columns, columns * weight, series.residual[rows]))
+    contact = law.nearest(solve(columns, columns * weight, series.residual[rows]))
     interval = _whole(near, series, event)
     out = [NamedEffect(law.name, None, contact, interval, event.recording)]
     load = _load_like(contact, np.asarray(motion.bodies.gravity, dtype=float))
@@ -185,15 +125,6 @@ def _load_like(contact: Values, gravity: np.ndarray) -> Values | None:
     return {"m": mass, **centre, **moments}
 
 
-def _solve(columns: np.ndarray, weighted: np.ndarray, residual: np.ndarray) -> np.ndarray:
-    gram = np.einsum("njk,njl->kl", weighted, columns)
-    return ridge_solve(gram, np.einsum("njk,nj->k", weighted, residual), RIDGE)
-
-
-def _inside(series: RecordingResidual, start: float, end: float) -> np.ndarray:
-    return np.flatnonzero((series.time >= start) & (series.time <= end))
-
-
 def _cut(series: RecordingResidual, rows: np.ndarray) -> RecordingResidual:
     m = series.motion
     motion = replace(m, time=m.time[rows], q=m.q[rows], v=m.v[rows], a=m.a[rows], load=m.load[rows], cache={})
@@ -208,7 +139,7 @@ def _residual_power(
     With the usual power as the noise, a joint that is usually almost still would gain more than all others together.
     """
     start, end = effect.interval or (0.0, 0.0)
-    rows = _inside(series, start, end)
+    rows = inside(series, start, end)
     counts = series.valid[rows].sum(axis=0)
     noise = max(1.0, float(counts.sum()))
     before, after_power = (
@@ -217,24 +148,3 @@ def _residual_power(
     share = float(np.clip((after_power.sum() - noise) / max(before.sum() - noise, 1e-300), 0.0, 1.0))
     gains = 0.5 * counts * np.log(np.maximum(before, 1e-300) / np.maximum(after_power, 1e-300)) / scan.inflation
     return share, float(after_power.sum()) / noise, gains
-
-
-def _well_inside(series: RecordingResidual, effect: NamedEffect, slack: float) -> np.ndarray:
-    """Samples of an event less those near its edges that the filter blurs, where enough are left."""
-    start, end = effect.interval or (0.0, 0.0)
-    inner = _inside(series, start + slack, end - slack)
-    return inner if inner.size > 2 * BLOCKS else _inside(series, start, end)
-
-
-def predicted_from_the_others(residual: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """What each part leaves after one step of Gauss–Newton on all other parts, shape (n, dof).
-
-    Args:
-        residual: shape (n, dof), of the fit.
-        slopes: shape (n, dof, k), its derivatives.
-    """
-    out = np.zeros_like(residual)
-    for rows in np.array_split(np.arange(len(residual)), BLOCKS):
-        others = np.setdiff1d(np.arange(len(residual)), rows)
-        out[rows] = residual[rows] - slopes[rows] @ _solve(slopes[others], slopes[others], residual[others])
-    return out
