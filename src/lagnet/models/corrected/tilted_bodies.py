@@ -115,7 +115,7 @@ def carried_torque(motion: Motion, body: Named, change: np.ndarray) -> np.ndarra
         return np.zeros_like(motion.load)
     link = motion.n_dof - 1 if body.joint is None else body.joint
     moving = motion.body_torque(link, np.asarray(effect_named(body.effect).coordinates(body.values)))
-    return moving * share + (weight(motion, body, change) if change.any() else 0.0)
+    return (moving + (_weight(motion, body, change) if change.any() else 0.0)) * share
 
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
