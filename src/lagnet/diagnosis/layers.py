@@ -40,10 +40,13 @@ def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[
     beside, remains = state.identified, any(size.above for size in state.sizes)
     instead = None
     if beside is not None or remains:
-        instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside)
+        instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside, state.sensor_noise)
     model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead))
     found = beside if instead is None else instead
-    learned = learn_remainder(state.problem, model, state.seed) if found is not None or remains else None
+    learned = None
+    if found is not None or remains:
+        significant = state.problem.limits.above_noise * state.sensor_noise
+        learned = learn_remainder(state.problem, model, state.seed, floor=significant)
     model = replace(model, remainder=learned)
     torques = holdout_torques(model, held, state.holdout, ends_of)
     return Correction(model, found, torques, holdout_errors(torques, state.holdout))

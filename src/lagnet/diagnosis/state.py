@@ -111,6 +111,12 @@ class DiagnosisState:
         return identify(lasting(self.problem, self.events), self.effects)
 
     @property
+    def sensor_noise(self) -> np.ndarray:
+        """Noise floor without the error that the nominal model is known to make, shape (dof,) [N m]."""
+        known = 0.0 if self.problem.missed is None else self.problem.missed
+        return np.sqrt(np.maximum(self.noise**2 - np.square(known), 0.0))
+
+    @property
     def missed(self) -> np.ndarray:
         """√max(mean r² − σ², 0) on held-out motion: error of the corrected model beyond noise, shape (dof,) [N m]."""
         power = np.array([joint.power for joint in self.sizes])

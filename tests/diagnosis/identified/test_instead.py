@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from tests.diagnosis.conftest import Plant
 
 from lagnet.diagnosis.identified.fit import identify
@@ -28,6 +29,16 @@ def test_a_gain_in_the_place_of_wrong_links_is_given_up() -> None:
     problem = posed(arm, Plant(real))
     wrong = [NamedEffect("torque_gain", j, {"g": g}) for j, g in enumerate(HEAVIER)]
     assert instead_of_names(problem, wrong, identify(problem, wrong)) is not None
+
+
+def test_none_is_sought_where_names_leave_noise_alone(monkeypatch) -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    problem = posed(arm, Plant(arm.with_inertial_parameters(arm.inertial_parameters() * HEAVIER[:, None])))
+    wrong = [NamedEffect("torque_gain", j, {"g": g}) for j, g in enumerate(HEAVIER)]
+    beside = identify(problem, wrong)
+    assert instead_of_names(problem, wrong, beside, floor=np.zeros(3)) is not None
+    monkeypatch.setattr("lagnet.diagnosis.identified.instead.identify", lambda *_: pytest.fail("sought"))
+    assert instead_of_names(problem, wrong, beside, floor=problem.scale) is None
 
 
 def test_right_names_stay_with_and_without_more_to_identify() -> None:

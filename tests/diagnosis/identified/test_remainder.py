@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from tests.diagnosis.conftest import Plant
 
-from lagnet.diagnosis.identified.remainder import RemainderSettings, learn_remainder
+from lagnet.diagnosis.identified.remainder import learn_remainder
+from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -100,3 +101,11 @@ def test_rest_is_no_motion_that_was_learned_from(learned) -> None:
     epsilon = learn_remainder(few, mechanics, 0, replace(FEW, gain=0.0))
     anchored = epsilon.anchors * epsilon.spread + epsilon.centre
     assert np.sin(problem.fit[0].q[problem.fit[0].keep][counts.all(axis=1)][:, 0]).max() >= anchored[:, 0].max() - 1e-9
+
+
+def test_nothing_is_trained_on_a_residual_at_the_floor(learned) -> None:
+    problem, mechanics, epsilon = learned
+    size = np.sqrt(unseen_errors(problem, mechanics))
+    assert epsilon is not None
+    assert learn_remainder(problem, mechanics, seed=0, floor=10.0 * size) is None
+    assert learn_remainder(problem, mechanics, seed=0, settings=FEW, floor=size * [0.1, 10.0]) is not None

@@ -20,21 +20,28 @@ from lagnet.models.corrected.named_effects import NamedEffect, torque_with, tran
 LESS = np.log(0.9)  # mean over joints of ln(error in place of the names / error beside them), below which it is used
 
 
-def instead_of_names(problem: Problem, effects: Sequence[NamedEffect], beside: Identified | None) -> Identified | None:
+def instead_of_names(
+    problem: Problem, effects: Sequence[NamedEffect], beside: Identified | None, floor: np.ndarray | float = 0.0
+) -> Identified | None:
     """The layer without the effects that always act, where it predicts unseen blocks better than with them; else None.
 
     Args:
         problem: the diagnosis' problem.
         effects: named physics.
         beside: the layer beside all of it; None where it predicts nothing more.
+        floor: shape (dof,), error that noise alone leaves [N m]: no layer is sought where none could be so much better.
     """
     rest = transients_among(effects)
-    alone = identify(problem, rest) if len(rest) < len(effects) else None
-    if alone is None:
+    with_names = np.maximum(_error_of(problem, effects) if beside is None else _block_error(beside), 1e-300)
+    if len(rest) == len(effects) or not _is_better(np.minimum(np.square(floor), with_names), with_names):
         return None
-    with_names = _error_of(problem, effects) if beside is None else _block_error(beside)
-    ratio = np.maximum(_block_error(alone), 1e-300) / np.maximum(with_names, 1e-300)
-    return alone if np.mean(np.log(ratio)) < LESS else None
+    alone = identify(problem, rest)
+    return alone if alone is not None and _is_better(_block_error(alone), with_names) else None
+
+
+def _is_better(error: np.ndarray, other: np.ndarray) -> bool:
+    """Whether one mean square error (dof,) is less than another by `LESS` in the mean of its logarithm."""
+    return bool(np.mean(np.log(np.maximum(error, 1e-300) / other)) < LESS)
 
 
 def _block_error(found: Identified) -> np.ndarray:

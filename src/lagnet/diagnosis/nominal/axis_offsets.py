@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -18,11 +18,12 @@ from scipy.optimize import least_squares
 from lagnet.diagnosis.problem.problem import Problem, Segment, pose_problem
 from lagnet.diagnosis.regression.normal_equations import scaled_weights
 from lagnet.effects.motion import Motion
-from lagnet.models.serial_chain.model import SerialChain
-from lagnet.models.serial_chain.open_shape import OpenShape
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.recordings.recording import Recording
 from lagnet.recordings.sampling import spread_rows
+
+if TYPE_CHECKING:
+    from lagnet.models.serial_chain.open_shape import OpenShape
 
 SAMPLES = 1_000
 STARTS = 3
@@ -44,6 +45,11 @@ def settle_axis_offsets(
         missed: shape (dof,), torque that the model is known to miss [N m]; None: the residual of its training.
         seed: of the starts.
     """
+    if not hasattr(robot, "training"):  # not learned: JAX, a fourth of all imports, is not needed for it
+        return robot
+    from lagnet.models.serial_chain.model import SerialChain
+    from lagnet.models.serial_chain.open_shape import OpenShape
+
     if not isinstance(robot, SerialChain) or robot.n_dof < 2:
         return robot
     if missed is None:

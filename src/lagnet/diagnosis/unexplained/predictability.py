@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from sklearn.ensemble import HistGradientBoostingRegressor
 from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.plain_terms import sparse_share
+
+if TYPE_CHECKING:
+    from sklearn.ensemble import HistGradientBoostingRegressor
 
 MOST = 4_000  # training samples
 HISTORY = 0.5  # how far back the short history looks, in periods of the bandwidth
@@ -76,6 +79,8 @@ def predictability_of(
         residual, unseen_residual: shape (n,), (m,), one joint [N m].
         counts: shape (n,), samples of the fit that count.
     """
+    from sklearn.ensemble import HistGradientBoostingRegressor  # slow to import, and used where something is left
+
     rng = np.random.default_rng(seed)
     rows = np.flatnonzero(counts)
     rows = np.sort(rng.permutation(rows)[:MOST])
