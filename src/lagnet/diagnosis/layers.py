@@ -38,14 +38,14 @@ class Correction:
 def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[int | None]) -> Correction:
     """Estimates the layers beyond the named one, on fitted recordings alone, and judges all on held-out ones."""
     beside, remains = state.identified, any(size.above for size in state.sizes)
-    instead = None
+    significant = state.problem.limits.above_noise * state.sensor_noise
+    instead = learned = None
     if beside is not None or remains:
-        instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside, state.sensor_noise)
+        samples = state.equations.samples / state.selection.scales.inefficiency
+        instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside, significant, samples)
     model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead))
     found = beside if instead is None else instead
-    learned = None
     if found is not None or remains:
-        significant = state.problem.limits.above_noise * state.sensor_noise
         learned = learn_remainder(state.problem, model, state.seed, floor=significant)
     model = replace(model, remainder=learned)
     torques = holdout_torques(model, held, state.holdout, ends_of)

@@ -51,6 +51,14 @@ def test_right_names_stay_with_and_without_more_to_identify() -> None:
         assert instead_of_names(problem, right, identify(problem, right)) is None
 
 
+def test_parameters_fitted_to_few_independent_samples_have_seen_the_blocks_that_judge_them() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    problem = posed(arm, Plant(arm, [lambda q, v, a, load: FRICTION * v]))
+    right = [NamedEffect("viscous_friction", j, {"Fv": FRICTION}) for j in range(3)]
+    assert instead_of_names(problem, right, None, samples=np.full(3, 400.0)) is None
+    assert instead_of_names(problem, right, None, samples=np.full(3, 10.0)) is not None
+
+
 def test_transients_are_kept_and_nothing_stands_in_its_place() -> None:
     arm = random_arm(2, seed=4, kinds=("revolute",), fixed=False)
     problem = posed(arm, Plant(arm))

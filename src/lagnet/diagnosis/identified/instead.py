@@ -2,7 +2,7 @@
 
 Names are claims with parameters of their own. Where a name holds a part of what another cause does, as a gain does of
 links that differ, a layer that is fitted beside its fixed value cannot take that back. Held-out blocks of the fitted
-recordings decide: they have been seen by the names' parameters, and by nothing of the other layer's.
+recordings decide: the names' parameters have seen them, which the final prediction error (Akaike 1970) accounts for.
 """
 
 from __future__ import annotations
@@ -15,13 +15,18 @@ import numpy as np
 from lagnet.diagnosis.identified.evidence import joint_equations
 from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.problem import Problem
+from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with, transients_among
 
-LESS = np.log(0.9)  # mean over joints of ln(error in place of the names / error beside them), below which it is used
+TIE = 1e-3  # mean over joints of ln(error in place of the names / error beside them): within it names stay
 
 
 def instead_of_names(
-    problem: Problem, effects: Sequence[NamedEffect], beside: Identified | None, floor: np.ndarray | float = 0.0
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    beside: Identified | None,
+    floor: np.ndarray | float = 0.0,
+    samples: np.ndarray | float = np.inf,
 ) -> Identified | None:
     """The layer without the effects that always act, where it predicts unseen blocks better than with them; else None.
 
@@ -29,19 +34,31 @@ def instead_of_names(
         problem: the diagnosis' problem.
         effects: named physics.
         beside: the layer beside all of it; None where it predicts nothing more.
-        floor: shape (dof,), error that noise alone leaves [N m]: no layer is sought where none could be so much better.
+        floor: shape (dof,), error with the names up to which nothing is left to explain [N m].
+        samples: shape (dof,), independent samples of each joint that the names' parameters were fitted to.
     """
     rest = transients_among(effects)
-    with_names = np.maximum(_error_of(problem, effects) if beside is None else _block_error(beside), 1e-300)
-    if len(rest) == len(effects) or not _is_better(np.minimum(np.square(floor), with_names), with_names):
+    with_names = _error_of(problem, effects) if beside is None else _block_error(beside)
+    if len(rest) == len(effects) or np.all(with_names <= np.square(floor)):
         return None
     alone = identify(problem, rest)
-    return alone if alone is not None and _is_better(_block_error(alone), with_names) else None
+    if alone is None:
+        return None
+    unseen = with_names * _optimism([e for e in effects if e not in rest], samples, problem.n_dof)
+    ratio = np.maximum(_block_error(alone), 1e-300) / np.maximum(unseen, 1e-300)
+    return alone if np.mean(np.log(ratio)) < -TIE else None
 
 
-def _is_better(error: np.ndarray, other: np.ndarray) -> bool:
-    """Whether one mean square error (dof,) is less than another by `LESS` in the mean of its logarithm."""
-    return bool(np.mean(np.log(np.maximum(error, 1e-300) / other)) < LESS)
+def _optimism(effects: Sequence[NamedEffect], samples: np.ndarray | float, n_dof: int) -> np.ndarray:
+    """1 + 2 p / n, shape (dof,): error on new samples over that on the n which p parameters were fitted to.
+
+    Parameters that reach all joints are spread over them.
+    """
+    parameters = np.zeros(n_dof)
+    for effect in effects:
+        shared = effect.joint is None or effect_named(effect.effect).reaches_all
+        parameters[slice(None) if shared else effect.joint] += len(effect.values) / (n_dof if shared else 1)
+    return 1.0 + 2.0 * parameters / samples
 
 
 def _block_error(found: Identified) -> np.ndarray:
