@@ -196,3 +196,7 @@ class StateEffect(Effect):
     @abstractmethod
     def derivative(self, state: np.ndarray, q: float, v: float, load: float, values: Mapping[str, float]) -> np.ndarray:
         """Rate of the state at one instant."""
+
+    def left_of_start(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        """Share of the state at the first sample, which no recording tells, that a sample still depends on, (n,)."""
+        return np.zeros(motion.time.size)

@@ -11,8 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.effect import StateEffect
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
+
+FORGOTTEN = 0.05  # share of the state at the first sample, below which it does not matter
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +26,7 @@ class RecordingResidual:
     Args:
         motion: at the samples that are kept; its recording is the fitted one that it belongs to, None for another.
         residual: shape (n, dof), r of the model with its effects, low-passed [N m].
-        valid: shape (n, dof), False where a joint is at rest.
+        valid: shape (n, dof), False where a joint is at rest, or depends on a state that no recording tells.
         index: of the recording among those fitted, or among those held out.
     """
 
@@ -49,9 +53,21 @@ def residual_by_recording(
     """r = F(τ − τ_nominal − Σ τ_effect) of each recording, its segments joined in time."""
     parts: dict[int, list[tuple[Segment, np.ndarray]]] = {}
     for piece in pieces:
-        residual = problem.reduce(piece, piece.tau - torque_with(piece.motion(problem), effects))
-        parts.setdefault(piece.recording, []).append((piece, residual))
+        motion = piece.motion(problem)
+        residual = problem.reduce(piece, piece.tau - torque_with(motion, effects))
+        known = piece.with_counts(piece.counts & _state_is_known(motion, effects)[piece.keep])
+        parts.setdefault(piece.recording, []).append((known, residual))
     return tuple(_joined(problem, index, found) for index, found in parts.items())
+
+
+def _state_is_known(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray:
+    """Where effects with memory have forgotten the state that they began in, shape (n, dof)."""
+    out = np.ones_like(motion.q, dtype=bool)
+    for effect in effects:
+        law = effect_named(effect.effect)
+        if isinstance(law, StateEffect) and effect.joint is not None:
+            out[:, effect.joint] &= law.left_of_start(motion, effect.joint, effect.values) < FORGOTTEN
+    return out
 
 
 def _joined(problem: Problem, index: int, found: list[tuple[Segment, np.ndarray]]) -> RecordingResidual:

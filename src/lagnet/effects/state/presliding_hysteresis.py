@@ -61,5 +61,9 @@ class PreslidingHysteresis(StateEffect):
     def derivative(self, state: np.ndarray, q: float, v: float, load: float, values: Mapping[str, float]) -> np.ndarray:
         return v - abs(v) * values["sigma0"] * state / max(values["Fc"], 1e-12)
 
+    def left_of_start(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
+        travel = np.cumsum(np.abs(np.diff(motion.q[:, joint], prepend=motion.q[:1, joint])))
+        return np.exp(-travel * values["sigma0"] / max(values["Fc"], 1e-12))
+
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_reversals(motion, joint)
