@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design
-from lagnet.diagnosis.identified.evidence import JointEquations, Ridge, fit_ridge, joint_equations
+from lagnet.diagnosis.identified.evidence import START, JointEquations, Ridge, fit_ridge, joint_equations
 
 FOLDS = 6
 GUARD = 3  # samples left out on both sides of a block: the length of the filter's response
 INEFFICIENCIES = (3.0, 10.0, 20.0, 40.0)  # candidates for the statistical inefficiency
 COUPLED = 0.5  # largest held-out error of a joint with a coupling over that without
+MAYBE = 0.8  # of the fitted error: what lowers this by less does not halve that of held-out blocks
 IDLE = 0.98  # held-out error over the power of the target, above which a joint needs no terms
 FIRST, STEPS = 25, 5  # steps of the evidence's fixed point, initially and from a fit nearby
 
@@ -82,8 +83,20 @@ def choose(design: Design, inefficiencies: Sequence[float] = INEFFICIENCIES) -> 
 def _coupling(design: Design, folds: Sequence[Fold], best: Choice, pair: tuple[int, int]) -> frozenset[int]:
     """The groups that couple a pair of joints, where one of them is predicted far better with them; else none."""
     own = frozenset(i for i, g in enumerate(design.groups) if g.pair == pair)
+    if not np.any(_fitted_ratio(design, best, own)[list(pair)] < MAYBE):
+        return frozenset()
     coupled = _validated(design, folds, best.inefficiency, best.excluded - own)
     return own if np.any((coupled.nmse < COUPLED * best.nmse)[list(pair)]) else frozenset()
+
+
+def _fitted_ratio(design: Design, best: Choice, own: frozenset[int]) -> np.ndarray:
+    """Squared error on all rows, to which both are fitted, with some excluded groups over that without, (dof,)."""
+    precision = best.ridge.precision.copy()
+    for i in own:
+        precision[design.groups[i].unknowns] = START
+    start = replace(best.ridge, precision=precision)
+    ridge = fit_ridge(design, joint_equations(design), best.inefficiency, start, STEPS, best.excluded - own)
+    return ridge.variance / np.maximum(best.ridge.variance, 1e-300)
 
 
 def _fits_by_inefficiency(
