@@ -68,55 +68,58 @@ class Choice:
 
 def choose(design: Design, inefficiencies: Sequence[float] = INEFFICIENCIES) -> Choice | None:
     """argmin of the score over inefficiencies, couplings and joints with terms; None where no joint is predicted."""
-    folds, groups = block_folds(design), design.groups
+    rows, groups = _Rows(design, joint_equations(design), block_folds(design)), design.groups
     excluded = frozenset(i for i, g in enumerate(groups) if g.pair is not None)
-    best = min(_fits_by_inefficiency(design, folds, inefficiencies, excluded), key=lambda c: c.score)
-    needed = frozenset().union(*(_coupling(design, folds, best, pair) for pair in {g.pair for g in groups if g.pair}))
+    best = min(_fits_by_inefficiency(rows, inefficiencies, excluded), key=lambda c: c.score)
+    needed = frozenset().union(*(_coupling(rows, best, pair) for pair in {g.pair for g in groups if g.pair}))
     idle = frozenset(i for i, g in enumerate(groups) if g.joint is not None and best.nmse[g.joint] > IDLE)
     if needed or idle:
-        best = min(
-            _fits_by_inefficiency(design, folds, inefficiencies, (excluded - needed) | idle), key=lambda c: c.score
-        )
+        best = min(_fits_by_inefficiency(rows, inefficiencies, (excluded - needed) | idle), key=lambda c: c.score)
     return best if np.any(best.nmse <= IDLE) else None
 
 
-def _coupling(design: Design, folds: Sequence[Fold], best: Choice, pair: tuple[int, int]) -> frozenset[int]:
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """The equations, with the normal equations of all rows and those of each block held out, summed once."""
+
+    design: Design
+    total: tuple[JointEquations, ...]
+    folds: tuple[Fold, ...]
+
+
+def _coupling(rows: _Rows, best: Choice, pair: tuple[int, int]) -> frozenset[int]:
     """The groups that couple a pair of joints, where one of them is predicted far better with them; else none."""
-    own = frozenset(i for i, g in enumerate(design.groups) if g.pair == pair)
-    if not np.any(_fitted_ratio(design, best, own)[list(pair)] < MAYBE):
+    own = frozenset(i for i, g in enumerate(rows.design.groups) if g.pair == pair)
+    if not np.any(_fitted_ratio(rows, best, own)[list(pair)] < MAYBE):
         return frozenset()
-    coupled = _validated(design, folds, best.inefficiency, best.excluded - own)
+    coupled = _validated(rows, best.inefficiency, best.excluded - own)
     return own if np.any((coupled.nmse < COUPLED * best.nmse)[list(pair)]) else frozenset()
 
 
-def _fitted_ratio(design: Design, best: Choice, own: frozenset[int]) -> np.ndarray:
+def _fitted_ratio(rows: _Rows, best: Choice, own: frozenset[int]) -> np.ndarray:
     """Squared error on all rows, to which both are fitted, with some excluded groups over that without, (dof,)."""
     precision = best.ridge.precision.copy()
     for i in own:
-        precision[design.groups[i].unknowns] = START
+        precision[rows.design.groups[i].unknowns] = START
     start = replace(best.ridge, precision=precision)
-    ridge = fit_ridge(design, joint_equations(design), best.inefficiency, start, STEPS, best.excluded - own)
+    ridge = fit_ridge(rows.design, rows.total, best.inefficiency, start, STEPS, best.excluded - own)
     return ridge.variance / np.maximum(best.ridge.variance, 1e-300)
 
 
-def _fits_by_inefficiency(
-    design: Design, folds: Sequence[Fold], inefficiencies: Sequence[float], excluded: frozenset[int]
-) -> Iterator[Choice]:
+def _fits_by_inefficiency(rows: _Rows, inefficiencies: Sequence[float], excluded: frozenset[int]) -> Iterator[Choice]:
     start = None
     for inefficiency in inefficiencies:
-        choice = _validated(design, folds, inefficiency, excluded, start)
+        choice = _validated(rows, inefficiency, excluded, start)
         start = choice.ridge
         yield choice
 
 
-def _validated(
-    design: Design, folds: Sequence[Fold], inefficiency: float, excluded: frozenset[int], start: Ridge | None = None
-) -> Choice:
+def _validated(rows: _Rows, inefficiency: float, excluded: frozenset[int], start: Ridge | None = None) -> Choice:
     """A fit to all rows, and the error on each block of the fit to the others, from the same α and σ²."""
-    total = joint_equations(design)
-    ridge = fit_ridge(design, total, inefficiency, start, FIRST if start is None else STEPS, excluded)
+    design = rows.design
+    ridge = fit_ridge(design, rows.total, inefficiency, start, FIRST if start is None else STEPS, excluded)
     errors = np.zeros(len(design.joints))
-    for fold in folds:
+    for fold in rows.folds:
         part = fit_ridge(design, fold.fitted, inefficiency, ridge, STEPS, excluded)
         errors += [s.error(part.x[j.unknowns]) for s, j in zip(fold.held_out, design.joints, strict=True)]
-    return Choice(ridge, inefficiency, excluded, errors / np.array([max(s.power, 1e-300) for s in total]))
+    return Choice(ridge, inefficiency, excluded, errors / np.array([max(s.power, 1e-300) for s in rows.total]))

@@ -53,21 +53,20 @@ def residual_by_recording(
     """r = F(τ − τ_nominal − Σ τ_effect) of each recording, its segments joined in time."""
     parts: dict[int, list[tuple[Segment, np.ndarray]]] = {}
     for piece in pieces:
-        motion = piece.motion(problem)
-        residual = problem.reduce(piece, piece.tau - torque_with(motion, effects))
-        known = piece.with_counts(piece.counts & _state_is_known(motion, effects)[piece.keep])
-        parts.setdefault(piece.recording, []).append((known, residual))
+        residual = problem.reduce(piece, piece.tau - torque_with(piece.motion(problem), effects))
+        parts.setdefault(piece.recording, []).append((with_known_state(problem, piece, effects), residual))
     return tuple(_joined(problem, index, found) for index, found in parts.items())
 
 
-def _state_is_known(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray:
-    """Where effects with memory have forgotten the state that they began in, shape (n, dof)."""
-    out = np.ones_like(motion.q, dtype=bool)
+def with_known_state(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]) -> Segment:
+    """The segment with the samples at which effects with memory have forgotten the state that they began in."""
+    counts, motion = piece.counts, piece.motion(problem)
     for effect in effects:
         law = effect_named(effect.effect)
         if isinstance(law, StateEffect) and effect.joint is not None:
-            out[:, effect.joint] &= law.left_of_start(motion, effect.joint, effect.values) < FORGOTTEN
-    return out
+            known = law.left_of_start(motion, effect.joint, effect.values)[piece.keep] < FORGOTTEN
+            counts = counts & (known[:, None] | (np.arange(counts.shape[1]) != effect.joint))
+    return piece if counts is piece.counts else piece.with_counts(counts)
 
 
 def _joined(problem: Problem, index: int, found: list[tuple[Segment, np.ndarray]]) -> RecordingResidual:

@@ -11,7 +11,7 @@ from lagnet.diagnosis.estimation.gauss_newton import start_gauss_newton
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.diagnosis.problem.residuals import RecordingResidual, residual_by_recording
+from lagnet.diagnosis.problem.residuals import RecordingResidual, residual_by_recording, with_known_state
 from lagnet.diagnosis.regression.normal_equations import ridge_solve
 from lagnet.effects.external.contact_force import FORCE, POINT, ContactForce
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -70,7 +70,8 @@ def around(problem: Problem, persistent: Sequence[NamedEffect], event: EventInte
     """What lies within a few seconds of an event."""
     low, high = event.start - AROUND, event.end + AROUND
     pieces = [p for p in problem.fit if p.recording == event.recording and p.time[0] < high and low < p.time[-1]]
-    return SurroundingSegments(replace(problem, fit=tuple(_between(p, low, high) for p in pieces)), tuple(persistent))
+    near = (_between(with_known_state(problem, p, persistent), low, high) for p in pieces)
+    return SurroundingSegments(replace(problem, fit=tuple(near)), tuple(persistent))
 
 
 def _between(piece: Segment, low: float, high: float) -> Segment:
