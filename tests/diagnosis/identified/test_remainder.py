@@ -13,11 +13,13 @@ from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.models.corrected.remainder_network import NetworkRemainder
+from lagnet.models.corrected.remainder_process import ProcessRemainder
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.rigid_body.random_arm import random_arm
 
 SECONDS, FITTED = 40.0, 2600  # of one motion that repeats after ten seconds; samples of it that are fitted
-FEW = RemainderSettings(members=2, hidden=8, steps=60, most=300, anchors=100)
+FEW = RemainderSettings(members=3, hidden=8, steps=60, most=300, anchors=100, places=100)
 MUCH_LESS = 0.5  # of the squared error, that ε may leave of a torque that is a smooth function of the positions
 FAR = 50.0  # times any speed of the training motion
 
@@ -58,9 +60,8 @@ def unseen_errors(problem: Problem, model: CorrectedModel) -> np.ndarray:
 def test_a_smooth_hidden_torque_is_learned_and_a_joint_with_noise_alone_is_left(learned) -> None:
     problem, mechanics, epsilon = learned
     before, after = (unseen_errors(problem, m) for m in (mechanics, replace(mechanics, remainder=epsilon)))
-    assert epsilon.share[0] > 0.0
+    np.testing.assert_array_equal(epsilon.acts_on, [True, False])
     assert after[0] < MUCH_LESS * before[0]
-    assert epsilon.share[1] == 0.0
     assert after[1] == before[1]
 
 
@@ -79,7 +80,7 @@ def test_nothing_is_taken_where_there_is_only_noise(arm) -> None:
 
 def test_a_seed_gives_one_result_and_another_seed_another(arm) -> None:
     problem, mechanics = posed(arm, [hidden(arm)])
-    first, again, other = (learn_remainder(problem, mechanics, seed, replace(FEW, gain=0.0)) for seed in (3, 3, 4))
+    first, again, other = (learn_remainder(problem, mechanics, seed, FEW).parts[0] for seed in (3, 3, 4))
     assert all(np.array_equal(a, b) for a, b in zip(first.weights, again.weights, strict=True))
     assert np.array_equal(first.share, again.share)
     assert not np.array_equal(first.weights[0], other.weights[0])
@@ -95,12 +96,22 @@ def test_what_acts_in_one_recording_alone_is_not_learned_anew(arm) -> None:
 
 def test_rest_is_no_motion_that_was_learned_from(learned) -> None:
     problem, mechanics, _ = learned
-    rests = problem.fit[0].q[problem.fit[0].keep, 0] > np.median(problem.fit[0].q[:, 0])
-    counts = problem.fit[0].counts & ~rests[:, None]
-    few = replace(problem, fit=(problem.fit[0].with_counts(counts), *problem.fit[1:]))
-    epsilon = learn_remainder(few, mechanics, 0, replace(FEW, gain=0.0))
-    anchored = epsilon.anchors * epsilon.spread + epsilon.centre
-    assert np.sin(problem.fit[0].q[problem.fit[0].keep][counts.all(axis=1)][:, 0]).max() >= anchored[:, 0].max() - 1e-9
+    piece = problem.fit[0]
+    rests = piece.q[piece.keep, 0] > np.median(piece.q[:, 0])
+    counts = piece.counts & ~rests[:, None]
+    few = replace(problem, fit=(piece.with_counts(counts), *problem.fit[1:]))
+    networks, process = _parts(learn_remainder(few, mechanics, 0, FEW))
+    furthest = np.sin(piece.q[piece.keep][counts.all(axis=1)][:, 0]).max() + 1e-9
+    assert np.all(networks.anchors[0][:, 0] * networks.spread[0, 0] + networks.centre[0, 0] <= furthest)
+    anchored = process.anchors[process.counted[:, 0]]
+    assert np.all(anchored[:, 0] * process.spread[0] + process.centre[0] <= furthest)
+
+
+def _parts(epsilon) -> tuple[NetworkRemainder, ProcessRemainder]:
+    networks, process = epsilon.parts
+    assert isinstance(networks, NetworkRemainder)
+    assert isinstance(process, ProcessRemainder)
+    return networks, process
 
 
 def test_nothing_is_trained_on_a_residual_at_the_floor(learned) -> None:

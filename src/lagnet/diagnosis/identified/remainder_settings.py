@@ -10,23 +10,23 @@ class RemainderSettings:
     """Size and training of ε.
 
     Args:
-        members: networks of the ensemble.
+        members: networks of a joint's committee; each leaves one contiguous block of the motion out.
         hidden: units of each of two hidden layers.
         steps: of the optimiser, over all samples at once.
         rate: of learning.
         decay: of weights.
-        folds: contiguous blocks that are left out in turn.
-        gain: least reduction of a joint's held-out squared error by ε, as a share, to be used there.
-        most: training samples.
-        anchors: samples that describe the extent of the motion that was learned from.
+        gain: least reduction of a joint's held-out squared error by a part of ε, as a share, for it to be used there.
+        most: training samples of the networks.
+        anchors: samples that describe the extent of the motion that the networks learned from.
+        places: training samples of the Gaussian process.
     """
 
-    members: int = 3
+    members: int = 8
     hidden: int = 16
     steps: int = 200
-    rate: float = 5e-3
-    decay: float = 3e-2
-    folds: int = 4
-    gain: float = 0.1
+    rate: float = 2e-2
+    decay: float = 1e-2
+    gain: float = 0.05
     most: int = 1000
-    anchors: int = 400
+    anchors: int = 200
+    places: int = 300

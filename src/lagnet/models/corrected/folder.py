@@ -16,12 +16,13 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.errors import LagnetError, ModelError
 from lagnet.files import finite_json, read_bounded, write_whole
 from lagnet.models.corrected.changed_bodies import are_consistent
-from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json, remainder_as_json, remainder_from_json
+from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.models.corrected.remainder_files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 2  # 2: with the identified layer
+FORMAT = 3  # 2: with the identified layer; 3: with a learned remainder in parts
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200
@@ -113,7 +114,7 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
         identified, instead = (layer_from_json(text.get(k), len(joints)) for k in ("identified", "instead"))
-        remainder = remainder_from_json(text.get("remainder"), len(joints))
+        remainder = remainder_from_json(text.get("remainder"), len(joints)) if layers == "full" else None
         held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.motion_terms import KINDS, MotionTerm, Rest
-from lagnet.models.corrected.remainder import LearnedRemainder
 
 REST = ("speed", "held")
 MOST_TERMS = 10_000
@@ -37,8 +35,8 @@ def layer_from_json(entry: Any, n_dof: int) -> IdentifiedLayer | None:
         return None
     if len(entry["terms"]) > MOST_TERMS:
         raise ValueError(f"{len(entry['terms'])} terms are more than any layer has")
-    bodies = None if entry["bodies"] is None else _numbers(entry["bodies"], (n_dof, 10))
-    rest = Rest(*(_numbers(entry["rest"][name], (n_dof,)) for name in REST))
+    bodies = None if entry["bodies"] is None else numbers_of(entry["bodies"], (n_dof, 10))
+    rest = Rest(*(numbers_of(entry["rest"][name], (n_dof,)) for name in REST))
     terms = tuple(_term(t, n_dof) for t in entry["terms"])
     weights = np.array([float(t["weight"]) for t in entry["terms"]])
     if not np.isfinite(weights).all():
@@ -46,42 +44,15 @@ def layer_from_json(entry: Any, n_dof: int) -> IdentifiedLayer | None:
     return IdentifiedLayer(bodies, terms, weights, rest)
 
 
-def remainder_as_json(learned: LearnedRemainder | None) -> dict[str, Any] | None:
-    """Plain values of a learned remainder; None for none."""
-    if learned is None:
-        return None
-    single = {name: getattr(learned, name).tolist() for name in ("centre", "spread", "share", "anchors")}
-    layers = {name: [x.tolist() for x in getattr(learned, name)] for name in ("weights", "biases")}
-    return {**single, **layers, "reach": learned.reach}
-
-
-def remainder_from_json(entry: Any, n_dof: int) -> LearnedRemainder | None:
-    """A learned remainder from plain values.
+def numbers_of(entry: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Finite numbers of that shape.
 
     Raises:
-        ValueError, TypeError, KeyError: values that are no remainder of an arm of so many joints.
+        ValueError, TypeError: anything else.
     """
-    if entry is None:
-        return None
-    n = 4 * n_dof
-    biases = [np.array(b, dtype=float) for b in entry["biases"]]
-    members, sizes = len(biases[0]), [n, *(b.shape[1] for b in biases)]
-    shapes = pairwise(sizes)
-    weights = [_numbers(w, (members, *s)) for w, s in zip(entry["weights"], shapes, strict=True)]
-    biases = [_numbers(b, (members, m)) for b, m in zip(biases, sizes[1:], strict=True)]
-    centre, spread, share = (
-        _numbers(entry[k], s) for k, s in (("centre", (n,)), ("spread", (n,)), ("share", (n_dof,)))
-    )
-    anchors, reach = _numbers(entry["anchors"], (len(entry["anchors"]), n)), float(entry["reach"])
-    if sizes[-1] != n_dof or not reach > 0.0 or not np.all(spread > 0.0):
-        raise ValueError("the learned remainder has other joints, or no reach")
-    return LearnedRemainder(centre, spread, tuple(weights), tuple(biases), share, anchors, reach)
-
-
-def _numbers(entry: Any, shape: tuple[int, ...]) -> np.ndarray:
     values = np.array(entry, dtype=float)
     if values.shape != shape or not np.isfinite(values).all():
-        raise ValueError(f"the identified layer lacks an array of {shape} finite numbers")
+        raise ValueError(f"the correction lacks an array of {shape} finite numbers")
     return values
 
 

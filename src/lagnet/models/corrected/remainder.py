@@ -1,59 +1,64 @@
-"""The learned remainder ε: an ensemble of small networks on top of fixed mechanics, silent beyond its training."""
+"""The learned remainder ε: torque that mechanics and named physics leave, as a sum of parts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from lagnet.types import Trajectory
+from lagnet.types import JointVector, Trajectory
 
-BEYOND = 1.5  # times the distance of the farthest training sample at which ε is silent
+TOGETHER = 4096  # samples that are looked at together: more would fill the memory with what each part holds of them
+
+
+class RemainderPart(Protocol):
+    """A part of ε."""
+
+    @property
+    def share(self) -> JointVector:
+        """Share of this part that is used at each joint, shape (dof,); 0 where unseen samples did not gain."""
+        ...
+
+    def torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
+        """Torque of a few thousand samples that stand for themselves, shape (n, dof) [N m]."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedRemainder:
-    """Torque that mechanics and named physics leave, as a function of the sample: ε(q, v, a).
+    """ε(q, v, a) = Σ_k ε_k(q, v, a).
 
     Args:
-        centre, spread: shape (n_inputs,), by which features are standardised.
-        weights: one array (members, n_in, n_out) a layer; tanh between layers.
-        biases: one array (members, n_out) a layer.
-        share: shape (dof,), of the ensemble's mean that is used at each joint; 0 where unseen blocks did not gain.
-        anchors: shape (n_anchors, n_inputs), standardised samples of the training motion.
-        reach: distance to the nearest anchor up to which ε is used in full.
+        parts: in the order of their training, each on what those before it left.
+        slow: shape (dof,), speed below which a joint may rest, where dry friction takes any value: ε fades with |v|
+            there [rad/s].
     """
 
-    centre: np.ndarray
-    spread: np.ndarray
-    weights: tuple[np.ndarray, ...]
-    biases: tuple[np.ndarray, ...]
-    share: np.ndarray
-    anchors: np.ndarray
-    reach: float
+    parts: tuple[RemainderPart, ...]
+    slow: JointVector
+
+    @property
+    def acts_on(self) -> np.ndarray:
+        """Joints at which some part is used, shape (dof,)."""
+        return np.any([part.share > 0.0 for part in self.parts], axis=0)
 
     def torque(self, q: Trajectory, v: Trajectory, a: Trajectory) -> Trajectory:
         """ε at samples that stand for themselves, shape (n, dof) [N m]."""
-        x = (features(q, v, a) - self.centre) / self.spread
-        h = np.broadcast_to(x, (self.weights[0].shape[0], *x.shape))
-        for layer, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            h = h @ weight + bias[:, None, :]
-            h = h if layer == len(self.weights) - 1 else np.tanh(h)
-        mean, disagreement = h.mean(axis=0), h.std(axis=0)
-        sure = mean**2 / np.maximum(mean**2 + disagreement**2, 1e-300)  # members that disagree know nothing
-        return mean * sure * self.share * self._known(x)[:, None]
-
-    def _known(self, x: np.ndarray) -> np.ndarray:
-        """One near the training motion, falling to zero at BEYOND times its reach, shape (n,)."""
-        squares = np.sum(self.anchors**2, axis=1)
-        out = np.empty(len(x))
-        for start in range(0, len(x), 4096):
-            part = x[start : start + 4096]
-            distance = np.sum(part**2, axis=1)[:, None] - 2.0 * part @ self.anchors.T + squares
-            out[start : start + 4096] = np.sqrt(np.maximum(distance.min(axis=1), 0.0))
-        return np.clip((BEYOND - out / self.reach) / (BEYOND - 1.0), 0.0, 1.0)
+        out = np.zeros(np.shape(q))
+        for start in range(0, len(q), TOGETHER):
+            rows = slice(start, start + TOGETHER)
+            for part in self.parts:
+                out[rows] += part.torque(q[rows], v[rows], a[rows])
+        return out * np.minimum(1.0, np.abs(v) / self.slow)
 
 
-def features(q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
-    """What ε sees: sine and cosine of positions, speeds and accelerations, shape (n, 4 dof)."""
-    return np.hstack([np.sin(q), np.cos(q), v, a])
+def angles(q: Trajectory) -> np.ndarray:
+    """Sine and cosine of positions, shape (n, 2 dof): a turn more of a joint is no other place."""
+    return np.hstack([np.sin(q), np.cos(q)])
+
+
+def squared_distances(x: np.ndarray, anchors: np.ndarray) -> np.ndarray:
+    """|x_i − y_k|², shape (n, m), without negative rounding."""
+    squares = np.sum(x**2, axis=1)[:, None] - 2.0 * x @ anchors.T + np.sum(anchors**2, axis=1)
+    return np.maximum(squares, 0.0)

@@ -19,7 +19,7 @@ KINDS = (
 MEANING = {
     "nmse_named": "Named: with the effects that the verdict names.",
     "nmse_identified": "Identified: all that recordings determine, beside the named effects or in their place.",
-    "nmse_full": "With learned remainder: with small networks beyond that, where unseen motion gains from them.",
+    "nmse_full": "With learned remainder: with what is learned beyond that, where unseen motion gains from it.",
 }
 NAME_WIDTH = 20  # characters in a line
 MOST_TICKS = 7  # whose percentages have room beside each other
