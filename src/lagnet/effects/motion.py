@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from lagnet.effects.rest import blurred_sign, held_direction
+from lagnet.rigid_body.changed_bodies_torque import torque_of_change
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import Robot
 from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
@@ -86,13 +87,16 @@ class Motion:
     def body_torque(self, joint: int, parameters: np.ndarray) -> np.ndarray:
         """Torque of a body behind one joint, shape (n, dof) [N m]: its regressor times its ten inertial parameters.
 
-        Where the regressor is not known yet, Newton–Euler of an arm that has this body alone: a tenth of the time. A
-        change that is no real body has its regressor alone.
+        Where the regressor is not known yet, Newton–Euler of an arm that has this body alone: a tenth of the time.
         """
-        alone = None if "links" in self.cache else self.body_alone(joint, parameters)
-        if alone is None:
+        if "links" in self.cache or not isinstance(self.model, Robot):
             return np.asarray(self.link_regressor(joint) @ parameters)
-        return alone.inverse_dynamics(self.q, self.v, self.a)
+        alone = self.body_alone(joint, parameters)
+        if alone is not None:
+            return alone.inverse_dynamics(self.q, self.v, self.a)
+        change = np.zeros((self.n_dof, parameters.size))
+        change[joint] = parameters
+        return torque_of_change(self.model, change, self.q, self.v, self.a)
 
     def body_alone(self, joint: int, parameters: np.ndarray) -> Robot | None:
         """The arm with one body behind a joint and no other, without rotors.

@@ -11,7 +11,13 @@ import numpy as np
 from lagnet.diagnosis.estimation.superposition import Superposition
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.diagnosis.regression.block_gram import BLOCK
-from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse_where_told, normal, power_of_all
+from lagnet.diagnosis.regression.normal_equations import (
+    bounded_step,
+    inverse_where_told,
+    moment_of,
+    normal,
+    power_of_all,
+)
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
@@ -19,6 +25,7 @@ from lagnet.recordings.sampling import median_step
 
 STEPS = 12  # Gauss–Newton steps at most; a handful suffice from the search's start
 DONE = 1e-6  # relative change of the error at which the steps end
+SHRINKS = (1.0, 0.5, 0.25, 0.1, 0.03)  # of a step, until one lowers the error
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on segments spread over them
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 NOT_SAID = 1e6  # standard deviation reported of a coordinate that recordings do not determine, in its unit
@@ -136,27 +143,43 @@ class GaussNewton:
         return -step if x[i] + step > self.slots.bounds()[1][i] else step
 
     def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
-        """Bounded Gauss–Newton with step halving; parameters that are not free stay."""
-        if not free.any():
-            return x
-        lower, upper = (b[free] for b in self.slots.bounds())
-        residual = self.residuals(x)
-        error = power_of_all(residual)
-        for _ in range(STEPS):
-            gram, moment = normal(self.jacobian(x, free), residual)
-            step = bounded_step(gram, -moment, lower - x[free], upper - x[free])
-            for shrink in (1.0, 0.5, 0.25, 0.1, 0.03):
-                trial = x.copy()
-                trial[free] = np.clip(x[free] + shrink * step, lower, upper)
-                moved = self.residuals(trial)
-                if power_of_all(moved) < error:
-                    break
-            else:
+        """Bounded Gauss–Newton with step halving; parameters that are not free stay.
+
+        Derivatives cost many times what residuals do: each serves for two steps, and the steps end where fresh ones
+        foresee no noticeable gain, so that those at the end are known.
+        """
+        for _ in range(STEPS if free.any() else 0):
+            residual, whole = self.linear(x)
+            jacobian = [j[..., free] for j in whole]
+            gram, moment = normal(jacobian, residual)
+            step, error = self._bounded(x, free, gram, moment), power_of_all(residual)
+            if -(2.0 * moment + gram @ step) @ step < DONE * error:
                 return x
-            gain, x, residual, error = error - power_of_all(moved), trial, moved, power_of_all(moved)
-            if gain < DONE * error:
-                break
+            moved = self._lower(x, free, step, error, SHRINKS)
+            if moved is None:
+                return x
+            x, residual = moved
+            step = self._bounded(x, free, gram, moment_of(jacobian, residual))
+            again = self._lower(x, free, step, power_of_all(residual), SHRINKS[:1])
+            x = x if again is None else again[0]
         return x
+
+    def _bounded(self, x: np.ndarray, free: np.ndarray, gram: np.ndarray, moment: np.ndarray) -> np.ndarray:
+        lower, upper = (b[free] for b in self.slots.bounds())
+        return bounded_step(gram, -moment, lower - x[free], upper - x[free])
+
+    def _lower(
+        self, x: np.ndarray, free: np.ndarray, step: np.ndarray, error: float, shrinks: Sequence[float]
+    ) -> tuple[np.ndarray, list[np.ndarray]] | None:
+        """The first of the shrunk steps that lowers the error, with its residuals; None where none does."""
+        lower, upper = (b[free] for b in self.slots.bounds())
+        for shrink in shrinks:
+            trial = x.copy()
+            trial[free] = np.clip(x[free] + shrink * step, lower, upper)
+            residual = self.residuals(trial)
+            if power_of_all(residual) < error:
+                return trial, residual
+        return None
 
     def covariance(self, x: np.ndarray) -> tuple[np.ndarray, int]:
         """A⁻¹ (Σ_b J_bᵀe_b e_bᵀJ_b) A⁻¹, A = Σ_b J_bᵀJ_b, and the number of blocks b.

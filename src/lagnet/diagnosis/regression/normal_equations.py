@@ -22,8 +22,13 @@ def normal(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> t
     """Gram matrix (k, k) and moment (k,) of derivatives (n, dof, k) and residuals (n, dof) of several pieces."""
     flat = [j.reshape(-1, j.shape[2]) for j in jacobian]
     gram = sum((j.T @ j for j in flat), np.zeros((flat[0].shape[1],) * 2))
-    moment = sum((j.T @ r.ravel() for j, r in zip(flat, residuals, strict=True)), np.zeros(flat[0].shape[1]))
-    return gram, moment
+    return gram, moment_of(jacobian, residuals)
+
+
+def moment_of(jacobian: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> np.ndarray:
+    """Σ Jᵀr, shape (k,), of derivatives (n, dof, k) and residuals (n, dof) of several pieces."""
+    parts = (j.reshape(-1, j.shape[2]).T @ r.ravel() for j, r in zip(jacobian, residuals, strict=True))
+    return sum(parts, np.zeros(jacobian[0].shape[2]))
 
 
 def inverse(gram: np.ndarray) -> np.ndarray:

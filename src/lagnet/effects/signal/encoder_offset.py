@@ -9,8 +9,7 @@ from lagnet.effects.effect import LinearEffect, Parameter
 from lagnet.effects.excitation import needs_any_motion
 from lagnet.effects.motion import Motion
 from lagnet.effects.shifted import shifted_torque
-
-SMALL = 1e-3  # rad, step of the linearisation
+from lagnet.effects.slopes import per_angle
 
 
 @final
@@ -28,8 +27,7 @@ class EncoderOffset(LinearEffect):
     source = "swevers2007"
 
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:
-        both = [shifted_torque(motion, joint, np.full(motion.time.size, s * SMALL)) for s in (1.0, -1.0)]
-        return ((both[0] - both[1]) / (2.0 * SMALL))[..., None]
+        return per_angle(motion, joint)[..., None]
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         if values["delta"] == 0.0:

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import ClassVar, final
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
+from lagnet.effects.delayed import earlier
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_motion
 from lagnet.effects.motion import Motion
@@ -45,9 +45,8 @@ class TimeDelay(Effect):
         return super().is_determined(intervals) and not (low > -CLOCK and high < CLOCK)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        time, load = motion.time, motion.load[:, joint]
-        earlier = np.clip(time - values["T"], time[0], time[-1])
-        return CubicSpline(time, load)(earlier) - load
+        load = motion.load[:, joint]
+        return earlier(motion.time, load, values["T"]) - load
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_motion(motion, joint)

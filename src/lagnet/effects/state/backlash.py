@@ -10,10 +10,10 @@ from lagnet.effects.excitation import needs_reversals
 from lagnet.effects.gap import lag_in_gap
 from lagnet.effects.motion import Motion
 from lagnet.effects.shifted import shifted_torque
+from lagnet.effects.slopes import first_order, per_acceleration
 
 GAPS = tuple(float(h) for h in np.geomspace(5e-4, 0.03, 8))  # [rad] half gaps tried: transmissions of arms
 NEAR = (0.6, 1.6)  # a gap between two that are tried shows as a flight of another size, within these
-STEP = 1e-6  # [rad], [rad/s] of the derivatives
 LIGHT = 1e-3  # of the joint's usual inertia: below it, a model's inertia is no inertia
 
 
@@ -42,12 +42,7 @@ class Backlash(Effect):
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
         """To first order in x, ẋ and ẍ: a gap is small, and its torque is the exact one once it is refitted."""
-        per_angle, per_speed, per_acceleration = motion.remembered(
-            f"slopes about joint {joint}", lambda: _slopes(motion, joint)
-        )
-        lag, speed, acceleration = _lag(motion, joint, shape["h"])
-        moved = lag[:, None] * per_angle + speed[:, None] * per_speed + acceleration[:, None] * per_acceleration
-        return -moved[..., None]
+        return -first_order(motion, joint, *_lag(motion, joint, shape["h"]))[..., None]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.full(1, NEAR[0]), np.full(1, NEAR[1])
@@ -73,26 +68,9 @@ def _lag(motion: Motion, joint: int, half_gap: float) -> tuple[np.ndarray, np.nd
     return lag, np.gradient(lag, motion.time), _second(lag, motion.time)
 
 
-def _slopes(motion: Motion, joint: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """∂τ/∂q, ∂τ/∂v and ∂τ/∂a of one joint's motion, each of shape (n, dof)."""
-    none, step = np.zeros_like(motion.time), np.full_like(motion.time, STEP)
-    per_angle = shifted_torque(motion, joint, step) / STEP
-    per_speed = shifted_torque(motion, joint, none, dv=step) / STEP
-    return per_angle, per_speed, _per_acceleration(motion, joint)
-
-
-def _per_acceleration(motion: Motion, joint: int) -> np.ndarray:
-    """The joint's column of the mass matrix, shape (n, dof); the torque is linear in it."""
-
-    def make() -> np.ndarray:
-        return shifted_torque(motion, joint, np.zeros_like(motion.time), da=np.ones_like(motion.time))
-
-    return motion.remembered(f"mass about joint {joint}", make)
-
-
 def _inertia(motion: Motion, joint: int) -> np.ndarray:
     """Inertia of the bodies about the joint while the others are led, shape (n,) [kg m²]."""
-    inertia = _per_acceleration(motion, joint)[:, joint]
+    inertia = per_acceleration(motion, joint)[:, joint]
     usual = max(float(np.median(np.abs(inertia))), 1e-12)
     return np.maximum(inertia, LIGHT * usual)
 

@@ -9,8 +9,7 @@ from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_motion
 from lagnet.effects.motion import Motion
 from lagnet.effects.shifted import carried_torque, shifted_torque
-
-SMALL = 1e-3  # rad, size of the bend at which the law is made linear
+from lagnet.effects.slopes import first_order
 
 
 @final
@@ -31,9 +30,8 @@ class JointElasticity(Effect):
     source = "swevers2007"
 
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
-        torque = carried_torque(motion, joint)
-        size = SMALL / max(float(np.max(np.abs(torque))), 1e-9)
-        return (_bend(motion, joint, torque * size) / size)[..., None]
+        """To first order in the compliance 1/K."""
+        return first_order(motion, joint, *_lag(motion, carried_torque(motion, joint)))[..., None]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(1), np.full(1, np.inf)
@@ -51,13 +49,13 @@ class JointElasticity(Effect):
         return np.zeros(1), np.full(1, 1e3)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        return _bend(motion, joint, carried_torque(motion, joint) / values["K"])
+        return shifted_torque(motion, joint, *_lag(motion, carried_torque(motion, joint) / values["K"]))
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_motion(motion, joint)
 
 
-def _bend(motion: Motion, joint: int, bend: np.ndarray) -> np.ndarray:
-    """Torque that changes when the link trails its motor by `bend` [rad], shape (n, dof)."""
+def _lag(motion: Motion, bend: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position, speed and acceleration of the link less those of its motor, which it trails by `bend`, shape (n,)."""
     speed = np.gradient(bend, motion.time)
-    return shifted_torque(motion, joint, -bend, -speed, -np.gradient(speed, motion.time))
+    return -bend, -speed, -np.gradient(speed, motion.time)

@@ -9,9 +9,8 @@ import numpy as np
 from lagnet.effects.motion import Motion
 from lagnet.errors import ModelError
 from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
+from lagnet.rigid_body.changed_bodies_torque import torque_of_change
 from lagnet.types import RigidBodyModel, Trajectory
-
-CHUNK = 4096  # samples whose regressor is held at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,16 +39,11 @@ class IdentifiedLayer:
         Raises:
             ModelError: bodies change, and there are none.
         """
-        out = np.zeros(np.shape(q))
         if self.bodies is None or not self.bodies.any():
-            return out
+            return np.zeros(np.shape(q))
         if model is None:
             raise ModelError("the nominal model has no bodies that an identified layer could change")
-        change = self.bodies.ravel()
-        for start in range(0, len(q), CHUNK):
-            rows = slice(start, start + CHUNK)
-            out[rows] = model.joint_torque_regressor(q[rows], v[rows], a[rows]) @ change
-        return out
+        return torque_of_change(model, self.bodies, q, v, a)
 
     def term_torque(self, motion: Motion, load: Trajectory, ordered: bool = True) -> Trajectory:
         """Torque of the functions of motion, shape (n, dof) [N m].

@@ -1,0 +1,52 @@
+"""Torque of a change of bodies is the regressor times that change, whether or not it is a real body."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.rigid_body.changed_bodies_torque import torque_of_change
+from lagnet.rigid_body.random_arm import random_arm
+
+N, SAMPLES = 4, 30
+CHANGES = {
+    "none": lambda g: np.zeros((N, 10)),
+    "any": lambda g: g.normal(size=(N, 10)),
+    "first moments alone": lambda g: np.eye(10)[1:4].sum(axis=0) * g.normal(size=(N, 1)),
+    "inertia alone": lambda g: np.eye(10)[4:].sum(axis=0) * g.normal(size=(N, 1)),
+    "masses taken off": lambda g: -5.0 * np.eye(10)[0] * np.ones((N, 1)),
+    "hardly a mass": lambda g: np.r_[1e-9, g.normal(size=9)] * np.ones((N, 1)),
+}
+
+
+class WithoutNewtonEuler:
+    """A model of which the regressor alone is known, and what was asked of it."""
+
+    def __init__(self, robot) -> None:
+        self._robot, self.largest = robot, 0
+
+    def joint_torque_regressor(self, q, v, a):
+        self.largest = max(self.largest, len(q))
+        return self._robot.joint_torque_regressor(q, v, a)
+
+
+def motion(n: int = SAMPLES):
+    g = np.random.default_rng(1)
+    return g.normal(size=(n, N)), g.normal(size=(n, N)), g.normal(size=(n, N))
+
+
+@pytest.mark.parametrize("make", CHANGES.values(), ids=CHANGES)
+@pytest.mark.parametrize("kinds", [("revolute",), ("revolute", "prismatic")])
+def test_it_is_the_regressor_times_the_change(make, kinds) -> None:
+    robot = random_arm(N, seed=3, kinds=kinds).with_armature(np.full(N, 0.3))
+    change = make(np.random.default_rng(0))
+    expected = robot.joint_torque_regressor(*motion()) @ change.ravel()
+    np.testing.assert_allclose(torque_of_change(robot, change, *motion()), expected, rtol=1e-9, atol=1e-10)
+
+
+def test_of_a_model_that_is_no_robot_the_regressor_is_asked_in_pieces() -> None:
+    robot, change = random_arm(N, seed=3), np.random.default_rng(0).normal(size=(N, 10))
+    asked = WithoutNewtonEuler(robot)
+    found = torque_of_change(asked, change, *motion(9000))
+    np.testing.assert_allclose(found, torque_of_change(robot, change, *motion(9000)), rtol=1e-9, atol=1e-9)
+    assert asked.largest < 5000
