@@ -27,6 +27,6 @@ class RemainderSettings:
     rate: float = 2e-2
     decay: float = 1e-2
     gain: float = 0.05
-    most: int = 1000
+    most: int = 500
     anchors: int = 200
     places: int = 300
