@@ -23,7 +23,12 @@ UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of
 @final
 @dataclass(frozen=True)
 class NegligibleTorque(RejectionRule):
-    """Power of the effect's torque, over max(t² var τ, r mean r²), exceeds one at some joint: t and r are shared."""
+    """Power of the effect's torque, over max(t² var τ, min(r mean r², left)), exceeds one at some joint.
+
+    t and r are shared limits, r the residual of the nominal model, `left` the power of what all effects leave. Beside a
+    cause that makes the nominal model almost all wrong, a share of that error is much: an effect that explains more
+    than all that is left there is none to be passed over.
+    """
 
     name: ClassVar[str] = "negligible_torque"
     statement: ClassVar[str] = (
@@ -34,7 +39,7 @@ class NegligibleTorque(RejectionRule):
     together: ClassVar[bool] = True
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
-        sizes = self.sizes(candidate.problem, candidate.effects)
+        sizes = self.sizes(candidate.problem, candidate.effects, _left(candidate))
         undetermined = [
             not effect_named(e.effect).is_determined(intervals)
             for e, intervals in zip(candidate.effects, candidate.refit.intervals, strict=True)
@@ -50,13 +55,18 @@ class NegligibleTorque(RejectionRule):
         return self.rejection(candidate, candidate.indices[n], size, 1.0, detail)
 
     @staticmethod
-    def sizes(problem: Problem, effects: Sequence[NamedEffect]) -> list[float]:
-        """Power of each effect's torque over the least that may be claimed, at the joint where it is largest."""
+    def sizes(problem: Problem, effects: Sequence[NamedEffect], left: np.ndarray | float = np.inf) -> list[float]:
+        """Power of each effect's torque over the least that may be claimed, at the joint where it is largest.
+
+        Args:
+            left: shape (dof,), mean square of what all effects leave [N² m²].
+        """
         pieces = spread(problem.fit)
         motions = [p.motion(problem) for p in pieces]
         sums = [Superposition(m, effects) for m in motions]
         nominal = _mean_square([problem.residual(p) for p in pieces])
-        least = problem.limits.least_power(problem.scale**2, nominal)
+        limits = problem.limits
+        least = limits.least_power(problem.scale**2, np.minimum(nominal, left / limits.least_of_residual))
         out = []
         for n in range(len(effects)):
             parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
@@ -70,6 +80,13 @@ def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> 
     if change:
         out[:, list(change)] = problem.reduce(piece, np.column_stack(list(change.values())))
     return out
+
+
+def _left(candidate: Candidate) -> np.ndarray:
+    """Mean square of what all effects leave where a joint moves, shape (dof,) [N² m²]; endless where it never does."""
+    counts = np.sum([p.counts.sum(axis=0) for p in candidate.segments("fit")], axis=0)
+    squares = np.sum(candidate.residual("fit") ** 2, axis=0)
+    return np.where(counts > 0, squares / np.maximum(counts, 1), np.inf)
 
 
 def _mean_square(parts: list[np.ndarray]) -> np.ndarray:
