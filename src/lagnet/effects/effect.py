@@ -162,6 +162,11 @@ class Effect(ABC):
         """Whether an arm can have the effect at a joint at all, whatever moves."""
         return True
 
+    @property
+    def of_motion_alone(self) -> bool:
+        """Whether its torque follows from the motion of its joint, whatever the nominal model."""
+        return not (self.reaches_all or self.uses_load)
+
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         """None if the motion can show the effect, else the reason why it cannot, for an abstention."""
         return None

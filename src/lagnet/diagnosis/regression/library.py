@@ -191,7 +191,7 @@ class Library:
     def _follows_from(self, problem: Problem, index: int) -> Hashable:
         """What the columns of a hypothesis follow from, on a given piece."""
         h = self.hypotheses[index]
-        if _is_of_motion_alone(h.law) and h.joint is not None:
+        if h.law.of_motion_alone and h.joint is not None:
             return h, _sign_model(problem, h.joint)
         sign = tuple(None if x is None else x.tobytes() for x in (problem.slow, problem.straight, problem.held))
         known = problem.known if h.law.uses_load or h.effect in (*BODIES, OFFSET, GravityTilt.name) else ()
@@ -220,12 +220,7 @@ def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Mot
 
 def of_motion_alone(columns: Mapping[Hashable, np.ndarray]) -> dict[Hashable, np.ndarray]:
     """Of the columns that a segment keeps those that hold against any nominal model: they follow from q, v, a."""
-    return {key: x for key, x in columns.items() if isinstance(key, tuple) and _is_of_motion_alone(key[0].law)}
-
-
-def _is_of_motion_alone(law: Effect) -> bool:
-    """Whether the columns follow from the motion of the law's joint, whatever the nominal model."""
-    return not (law.reaches_all or law.uses_load)
+    return {key: x for key, x in columns.items() if isinstance(key, tuple) and key[0].law.of_motion_alone}
 
 
 def _sign_model(problem: Problem, joint: int) -> tuple[float, bool, float]:

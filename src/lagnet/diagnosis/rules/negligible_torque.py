@@ -27,7 +27,8 @@ class NegligibleTorque(RejectionRule):
 
     t and r are shared limits, r the residual of the nominal model, `left` the power of what all effects leave. Beside a
     cause that makes the nominal model almost all wrong, a share of that error is much: an effect that explains more
-    than all that is left there is none to be passed over.
+    than all that is left there is none to be passed over. That holds of laws of the joint's own motion alone; a share
+    of the load, or a body, may stand for a part of the large cause.
     """
 
     name: ClassVar[str] = "negligible_torque"
@@ -66,11 +67,13 @@ class NegligibleTorque(RejectionRule):
         sums = [Superposition(m, effects) for m in motions]
         nominal = _mean_square([problem.residual(p) for p in pieces])
         limits = problem.limits
-        least = limits.least_power(problem.scale**2, np.minimum(nominal, left / limits.least_of_residual))
+        least = limits.least_power(problem.scale**2, nominal)
+        beside = limits.least_power(problem.scale**2, np.minimum(nominal, left / limits.least_of_residual))
         out = []
-        for n in range(len(effects)):
+        for n, effect in enumerate(effects):
             parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
-            out.append(float(np.max(_mean_square(parts) / least)))
+            own = effect_named(effect.effect).of_motion_alone
+            out.append(float(np.max(_mean_square(parts) / (beside if own else least))))
         return out
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from lagnet.types import JointVector, Trajectory
 TOGETHER = 4096  # samples that are looked at together: more would fill the memory with what each part holds of them
 
 
+@runtime_checkable
 class RemainderPart(Protocol):
     """A part of ε."""
 
