@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from lagnet.models.corrected.remainder import TOGETHER, LearnedRemainder, angles, squared_distances
-from lagnet.models.corrected.remainder_files import remainder_as_json, remainder_from_json
-from lagnet.models.corrected.remainder_network import OWN, NetworkRemainder
-from lagnet.models.corrected.remainder_process import ProcessRemainder
+from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
+from lagnet.models.corrected.remainder.learned import TOGETHER, LearnedRemainder, angles, squared_distances
+from lagnet.models.corrected.remainder.network import OWN, NetworkRemainder
+from lagnet.models.corrected.remainder.process import ProcessRemainder
 
 N = 2
 SLOW = np.array([0.1, 0.2])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.models.corrected.remainder_network import BEYOND, OWN, NetworkRemainder, network_inputs
+from lagnet.models.corrected.remainder.network import BEYOND, OWN, NetworkRemainder, network_inputs
 
 REACH = 2.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.models.corrected.remainder_process import (
+from lagnet.models.corrected.remainder.process import (
     KNOWN,
     ProcessRemainder,
     matern,

@@ -21,7 +21,7 @@ from validation.real_arms.least_squares import LeastSquares
 from validation.real_arms.options import parser_of
 
 from lagnet.diagnosis.identified.fit import identify
-from lagnet.diagnosis.identified.remainder import learn_remainder
+from lagnet.diagnosis.identified.remainder.learn import learn_remainder
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.problem import Problem, Segment, pose_problem
 from lagnet.models.corrected.model import CorrectedModel

@@ -11,7 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.identified.fit import identify
-from lagnet.diagnosis.identified.remainder import learn_remainder
+from lagnet.diagnosis.identified.remainder.learn import learn_remainder
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.files import write_whole

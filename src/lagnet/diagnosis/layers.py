@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.holdout_torque import HoldoutTorque, holdout_errors, holdout_torques
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.instead import instead_of_names
-from lagnet.diagnosis.identified.remainder import learn_remainder
+from lagnet.diagnosis.identified.remainder.learn import learn_remainder
 from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.models.corrected.identified import IdentifiedLayer

@@ -87,13 +87,10 @@ class Motion:
     def body_torque(self, joint: int, parameters: np.ndarray) -> np.ndarray:
         """Torque of a body behind one joint, shape (n, dof) [N m]: its regressor times its ten inertial parameters.
 
-        Where the regressor is not known yet, Newton–Euler of an arm that has this body alone: a tenth of the time.
+        Where the regressor is not known yet, by Newton–Euler.
         """
         if "links" in self.cache or not isinstance(self.model, Robot):
             return np.asarray(self.link_regressor(joint) @ parameters)
-        alone = self.body_alone(joint, parameters)
-        if alone is not None:
-            return alone.inverse_dynamics(self.q, self.v, self.a)
         change = np.zeros((self.n_dof, parameters.size))
         change[joint] = parameters
         return torque_of_change(self.model, change, self.q, self.v, self.a)

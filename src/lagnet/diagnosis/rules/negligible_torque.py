@@ -40,7 +40,7 @@ class NegligibleTorque(RejectionRule):
     together: ClassVar[bool] = True
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
-        sizes = self.sizes(candidate.problem, candidate.effects, _left(candidate))
+        sizes = self.sizes(candidate.problem, candidate.effects, candidate.sigma**2)
         undetermined = [
             not effect_named(e.effect).is_determined(intervals)
             for e, intervals in zip(candidate.effects, candidate.refit.intervals, strict=True)
@@ -60,7 +60,7 @@ class NegligibleTorque(RejectionRule):
         """Power of each effect's torque over the least that may be claimed, at the joint where it is largest.
 
         Args:
-            left: shape (dof,), mean square of what all effects leave [N² m²].
+            left: shape (dof,), mean square of what all effects leave, noise at least [N² m²].
         """
         pieces = spread(problem.fit)
         motions = [p.motion(problem) for p in pieces]
@@ -83,13 +83,6 @@ def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> 
     if change:
         out[:, list(change)] = problem.reduce(piece, np.column_stack(list(change.values())))
     return out
-
-
-def _left(candidate: Candidate) -> np.ndarray:
-    """Mean square of what all effects leave where a joint moves, shape (dof,) [N² m²]; endless where it never does."""
-    counts = np.sum([p.counts.sum(axis=0) for p in candidate.segments("fit")], axis=0)
-    squares = np.sum(candidate.residual("fit") ** 2, axis=0)
-    return np.where(counts > 0, squares / np.maximum(counts, 1), np.inf)
 
 
 def _mean_square(parts: list[np.ndarray]) -> np.ndarray:

@@ -19,7 +19,7 @@ from lagnet.models.corrected.changed_bodies import are_consistent
 from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
-from lagnet.models.corrected.remainder_files import remainder_as_json, remainder_from_json
+from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
 FORMAT = 3  # 2: with the identified layer; 3: with a learned remainder in parts

@@ -15,7 +15,7 @@ from lagnet.errors import EffectError, ModelError
 from lagnet.models.corrected.changed_bodies import CHANGES_OF_BODIES, apply_to_bodies
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with, transients_among
-from lagnet.models.corrected.remainder import LearnedRemainder
+from lagnet.models.corrected.remainder.learned import LearnedRemainder
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.types import (
     InverseDynamics,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.identified.remainder_process import LENGTHS, NOISES, _Spectrum, fit_process
-from lagnet.diagnosis.identified.remainder_samples import RemainderSamples
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
-from lagnet.models.corrected.remainder_process import matern
+from lagnet.diagnosis.identified.remainder.process import LENGTHS, NOISES, _Spectrum, fit_process
+from lagnet.diagnosis.identified.remainder.samples import RemainderSamples
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
+from lagnet.models.corrected.remainder.process import matern
 
 N, SAMPLES = 3, 400
 NOISE = 0.05  # [N m] beside a torque of about 1

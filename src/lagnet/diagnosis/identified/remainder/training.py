@@ -15,7 +15,8 @@ import numpy as np
 import optax
 from jaxtyping import Array
 
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
+from lagnet.models.corrected.remainder.network import outputs
 
 
 def trained_networks(
@@ -51,11 +52,7 @@ def _descend(
     optimiser = optax.adamw(optax.cosine_decay_schedule(settings.rate, settings.steps), weight_decay=settings.decay)
 
     def loss(net: tuple[list[Array], list[Array]]) -> Array:
-        h = x
-        for layer, (weight, bias) in enumerate(zip(*net, strict=True)):
-            h = h @ weight + bias[:, :, None, :]
-            h = h if layer == len(net[0]) - 1 else jnp.tanh(h)
-        return jnp.sum((h[..., 0] - y) ** 2 * share)
+        return jnp.sum((outputs(*net, x, jnp.tanh) - y) ** 2 * share)
 
     def step(carry, _):
         net, state = carry

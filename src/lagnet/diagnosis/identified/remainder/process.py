@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.identified.remainder_samples import RemainderSamples
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
-from lagnet.models.corrected.remainder import squared_distances
-from lagnet.models.corrected.remainder_process import ProcessRemainder, matern, process_inputs
+from lagnet.diagnosis.identified.remainder.samples import RemainderSamples
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
+from lagnet.models.corrected.remainder.learned import squared_distances
+from lagnet.models.corrected.remainder.process import ProcessRemainder, matern, process_inputs
 from lagnet.recordings.sampling import spread_rows
 
 LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)  # of the median distance between samples

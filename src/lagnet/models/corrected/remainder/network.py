@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from lagnet.models.corrected.remainder import angles, squared_distances
+from lagnet.models.corrected.remainder.learned import angles, squared_distances
 from lagnet.types import JointVector, Trajectory
 
 BEYOND = 1.5  # times the distance of the farthest training sample at which a network is silent
@@ -63,12 +65,18 @@ def network_inputs(q: Trajectory, v: Trajectory, a: Trajectory, slow: JointVecto
     return np.concatenate([everywhere, own], axis=2)
 
 
-def outputs(weights: list[np.ndarray], biases: list[np.ndarray], x: np.ndarray) -> np.ndarray:
-    """Torque of each member, shape (members, dof, n), at standardised inputs x of shape (dof, n, n_inputs)."""
+def outputs(weights: Sequence[Any], biases: Sequence[Any], x: Any, tanh: Callable[[Any], Any] = np.tanh) -> Any:
+    """Torque of each member, shape (members, dof, n), at standardised inputs x of shape (dof, n, n_inputs).
+
+    Args:
+        weights, biases: of each layer, see `NetworkRemainder`; arrays of NumPy or, in training, of JAX.
+        x: of the same library.
+        tanh: of the same library.
+    """
     h = x
     for layer, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
         h = h @ weight + bias[:, :, None, :]
-        h = h if layer == len(weights) - 1 else np.tanh(h)
+        h = h if layer == len(weights) - 1 else tanh(h)
     return h[..., 0]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.identified.remainder_networks import _extent, _share, _without_one, fit_networks
-from lagnet.diagnosis.identified.remainder_samples import RemainderSamples
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
+from lagnet.diagnosis.identified.remainder.networks import _extent, _share, _without_one, fit_networks
+from lagnet.diagnosis.identified.remainder.samples import RemainderSamples
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
 
 N, SAMPLES = 2, 600
 NOISE = 0.05

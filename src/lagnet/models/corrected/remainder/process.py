@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.models.corrected.remainder import angles, squared_distances
+from lagnet.models.corrected.remainder.learned import angles, squared_distances
 from lagnet.types import JointVector, Trajectory
 
 KNOWN = 0.5  # share of the process' variance that the training motion must take away for it to speak

@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.identified.remainder_networks import fit_networks
-from lagnet.diagnosis.identified.remainder_process import fit_process
-from lagnet.diagnosis.identified.remainder_samples import RemainderSamples
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
+from lagnet.diagnosis.identified.remainder.networks import fit_networks
+from lagnet.diagnosis.identified.remainder.process import fit_process
+from lagnet.diagnosis.identified.remainder.samples import RemainderSamples
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.model import CorrectedModel
-from lagnet.models.corrected.remainder import LearnedRemainder, RemainderPart
+from lagnet.models.corrected.remainder.learned import LearnedRemainder, RemainderPart
 
 
 def learn_remainder(

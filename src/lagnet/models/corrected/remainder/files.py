@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from lagnet.models.corrected.layer_files import numbers_of
-from lagnet.models.corrected.remainder import LearnedRemainder, RemainderPart
-from lagnet.models.corrected.remainder_network import OWN, NetworkRemainder
-from lagnet.models.corrected.remainder_process import ProcessRemainder
+from lagnet.models.corrected.remainder.learned import LearnedRemainder, RemainderPart
+from lagnet.models.corrected.remainder.network import OWN, NetworkRemainder
+from lagnet.models.corrected.remainder.process import ProcessRemainder
 
 NETWORK, PROCESS = "networks", "gaussian_process"
 MOST_PARTS = 10

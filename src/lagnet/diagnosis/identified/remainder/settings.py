@@ -26,7 +26,7 @@ class RemainderSettings:
     steps: int = 200
     rate: float = 2e-2
     decay: float = 1e-2
-    gain: float = 0.05
+    gain: float = 0.1
     most: int = 500
     anchors: int = 200
     places: int = 300

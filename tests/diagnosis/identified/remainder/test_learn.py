@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from tests.diagnosis.conftest import Plant
 
-from lagnet.diagnosis.identified.remainder import learn_remainder
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
+from lagnet.diagnosis.identified.remainder.learn import learn_remainder
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
-from lagnet.models.corrected.remainder_network import NetworkRemainder
-from lagnet.models.corrected.remainder_process import ProcessRemainder
+from lagnet.models.corrected.remainder.network import NetworkRemainder
+from lagnet.models.corrected.remainder.process import ProcessRemainder
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.rigid_body.random_arm import random_arm
 

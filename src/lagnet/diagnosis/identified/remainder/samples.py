@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.models.corrected.remainder import RemainderPart
+from lagnet.models.corrected.remainder.learned import LearnedRemainder, RemainderPart
 from lagnet.recordings.sampling import spread_rows
 
 
@@ -39,4 +39,4 @@ class RemainderSamples:
 
     def without(self, part: RemainderPart) -> RemainderSamples:
         """What a part of ε leaves."""
-        return replace(self, left=self.left - part.torque(self.q, self.v, self.a))
+        return replace(self, left=self.left - LearnedRemainder((part,), self.slow).torque(self.q, self.v, self.a))

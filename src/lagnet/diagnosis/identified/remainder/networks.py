@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.diagnosis.identified.remainder_samples import RemainderSamples
-from lagnet.diagnosis.identified.remainder_settings import RemainderSettings
-from lagnet.models.corrected.remainder import squared_distances
-from lagnet.models.corrected.remainder_network import NetworkRemainder, network_inputs, outputs
+from lagnet.diagnosis.identified.remainder.samples import RemainderSamples
+from lagnet.diagnosis.identified.remainder.settings import RemainderSettings
+from lagnet.models.corrected.remainder.learned import squared_distances
+from lagnet.models.corrected.remainder.network import NetworkRemainder, network_inputs, outputs
 from lagnet.recordings.sampling import spread_rows
 
 
 def fit_networks(samples: RemainderSamples, seed: int, settings: RemainderSettings) -> NetworkRemainder | None:
     """ε of networks; None where no joint's held-out blocks gain."""
-    from lagnet.diagnosis.identified.remainder_training import trained_networks  # JAX: a fourth of all imports
+    from lagnet.diagnosis.identified.remainder.training import trained_networks  # JAX: a fourth of all imports
 
     x = network_inputs(samples.q, samples.v, samples.a, samples.slow)
     centre, spread = x.mean(axis=1), np.maximum(x.std(axis=1), 1e-9)
