@@ -6,7 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.signal import butter, sosfilt, sosfilt_zi
+from scipy.signal import butter, sosfilt_zi
+
+from lagnet.recordings.conditioning.compiled_filter import run_sections
 
 ORDER = 4  # of the Butterworth filter, doubled by running forth and back
 SETTLING = 2.0  # time for which the filter remembers an edge, in periods of its bandwidth
@@ -27,17 +29,13 @@ def low_pass(x: np.ndarray, rate: float, bandwidth: float) -> np.ndarray:
     if bandwidth >= 0.45 * rate or x.shape[0] < SHORTEST:
         return x
     pad = min(x.shape[0] - 1, max(3 * (2 * ORDER + 1), int(2.0 * rate / bandwidth)))
-    rows = np.ascontiguousarray(x.reshape(x.shape[0], -1).T, dtype=float)
-    before, after = 2.0 * rows[:, :1] - rows[:, pad:0:-1], 2.0 * rows[:, -1:] - rows[:, -2 : -pad - 2 : -1]
-    forth = _one_way(np.concatenate([before, rows, after], axis=1), rate, bandwidth)
-    both = _one_way(forth[:, ::-1], rate, bandwidth)[:, ::-1]
-    return np.ascontiguousarray(both[:, pad:-pad].T).reshape(x.shape)
-
-
-def _one_way(rows: np.ndarray, rate: float, bandwidth: float) -> np.ndarray:
-    """The filter along each row, settled on its first value."""
-    sections, settled = _sections(rate, bandwidth)
-    return sosfilt(sections, rows, axis=1, zi=settled[:, None, :] * rows[None, :, :1])[0]
+    flat = x.reshape(x.shape[0], -1)
+    wide = np.empty((x.shape[0] + 2 * pad, flat.shape[1]))
+    wide[:pad], wide[-pad:] = 2.0 * flat[:1] - flat[pad:0:-1], 2.0 * flat[-1:] - flat[-2 : -pad - 2 : -1]
+    wide[pad:-pad] = flat
+    for backwards in (False, True):
+        run_sections(wide, *_sections(rate, bandwidth), backwards)
+    return wide[pad:-pad].reshape(x.shape)
 
 
 @lru_cache(maxsize=64)
