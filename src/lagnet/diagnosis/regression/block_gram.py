@@ -66,4 +66,5 @@ def collect_block_grams(problem: Problem, library: Library, pieces: tuple[Segmen
 
 def _fill(grams: np.ndarray, table: np.ndarray, blocks: Sequence[np.ndarray]) -> None:
     for gram, rows in zip(grams, blocks, strict=False):  # of this segment; those of later ones follow
-        gram[:] = table[rows].T @ table[rows]
+        part = table[rows[0] : rows[-1] + 1]
+        np.matmul(part.T, part, out=gram)

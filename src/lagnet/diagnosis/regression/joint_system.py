@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ class JointSystem:
         folds: shape (n_folds, K + 1, K + 1).
         each: gives the blocks, shape (B, K + 1, K + 1), block b of fold b mod n_folds.
         known: what was judged, by selections in increasing order.
-        found: selections that a search found, by where it began.
+        found: what a search found, selections by where it began among it.
         more: squared errors with each hypothesis more, by selections in increasing order.
     """
 
@@ -43,7 +44,7 @@ class JointSystem:
     folds: np.ndarray
     each: Callable[[], np.ndarray]
     known: dict[tuple[int, ...], Judged] = field(default_factory=dict)
-    found: dict[Hashable, tuple[int, ...]] = field(default_factory=dict)
+    found: dict[Hashable, Any] = field(default_factory=dict)
     more: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
     @property

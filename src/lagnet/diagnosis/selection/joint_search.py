@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from lagnet.diagnosis.regression.joint_system import JointSystem, joint_system
 from lagnet.diagnosis.settings import DecisionLimits
 
 ROUNDS = 40
+
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +56,7 @@ class JointView:
         if not judged.feasible:
             return -np.inf
         evidence = -0.5 * self.pieces * np.log(max(judged.error, self.least_error))
-        return evidence - sum(self.limits.penalty(*self.equations.library.freedom[i]) for i in selection)
+        return float(evidence - self.equations.penalties[list(selection)].sum())
 
     @property
     def pieces(self) -> float:
@@ -67,6 +70,10 @@ class JointView:
 
     def scores_with_each(self, selection: Sequence[int]) -> np.ndarray:
         """log P(S ∪ {k}) for every hypothesis k of the joint, shape (m,); −∞ where k may not stand beside S."""
+        chosen = tuple(sorted(selection))
+        return self.remembered(("with each", chosen), lambda: self._scores_with_each(chosen))
+
+    def _scores_with_each(self, selection: tuple[int, ...]) -> np.ndarray:
         errors, feasible = self.system.with_each(selection)
         library = self.equations.library
         local = library.local[self.joint]
@@ -75,8 +82,8 @@ class JointView:
         penalties = self.equations.penalties[list(local)] + self.equations.penalties[list(selection)].sum()
         return np.where(feasible & ~barred, evidence - penalties, -np.inf)
 
-    def remembered(self, what: Hashable, make: Callable[[], tuple[int, ...]]) -> tuple[int, ...]:
-        """A selection that `make` finds on this system under these scales, found once."""
+    def remembered(self, what: Hashable, make: Callable[[], Found]) -> Found:
+        """What `make` finds on this system under these scales, found once."""
         key = (what, self.inefficiency, self.noise_power, self.torque_power)
         if key not in self.system.found:
             self.system.found[key] = make()
@@ -220,7 +227,7 @@ def best_addition(view: JointView, base: tuple[int, ...], tried: tuple[int, ...]
     local = view.equations.library.local[view.joint]
     if not local:
         return -np.inf, base
-    scores = view.scores_with_each(base)
+    scores = view.scores_with_each(base).copy()
     scores[[local.index(i) for i in tried]] = -np.inf
     best = int(np.argmax(scores))
     return float(scores[best]), (*base, local[best])

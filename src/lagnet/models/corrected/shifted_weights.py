@@ -35,13 +35,8 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
         return 0.0
     change = change_of_gravity(motion, tilts)
     ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
-    more, less = (_torque(p, bodies, change) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
+    more, less = (carried_torque(p, bodies, change) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
     return (more - less) / (2.0 * STEP)
-
-
-def _torque(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.ndarray:
-    """Torque of bodies in the field of the model and a change of it, shape (n, dof) [N m]."""
-    return sum((carried_torque(motion, b, change) for b in bodies), np.zeros_like(motion.load))
 
 
 def _turned(motion: Motion) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
@@ -11,6 +12,8 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.gravity_tilt import GravityTilt, is_large
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.presence import Present, presence
+from lagnet.rigid_body.changed_bodies_torque import torque_of_change
+from lagnet.rigid_body.robot import Robot
 
 TILT, BODIES = "gravity_tilt", ("payload", "link_inertia")
 TILT_LAW = GravityTilt()
@@ -102,24 +105,42 @@ def weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     return _weight(motion, body, gravity) * share if np.any(share) else np.zeros_like(motion.load)
 
 
-def carried_torque(motion: Motion, body: Named, change: np.ndarray) -> np.ndarray:
-    """Torque of a payload or link change in motion while it is there, shape (n, dof) [N m].
+def carried_torque(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.ndarray:
+    """Torque of payloads and link changes in motion while they are there, shape (n, dof) [N m].
 
     Args:
         motion: whose.
-        body: carried.
+        bodies: carried.
         change: shape (3,), of gravity against that of the model [m/s²].
     """
-    share = np.asarray(presence(motion, body))[..., None]
-    if not np.any(share):
-        return np.zeros_like(motion.load)
-    link = motion.n_dof - 1 if body.joint is None else body.joint
-    moving = motion.body_torque(link, np.asarray(effect_named(body.effect).coordinates(body.values)))
-    return (moving + (_weight(motion, body, change) if change.any() else 0.0)) * share
+    out, together = np.zeros_like(motion.load), defaultdict(list)
+    for body in bodies:
+        together[body.interval, body.recording].append(body)
+    for group in together.values():
+        share = np.asarray(presence(motion, group[0]))[..., None]
+        if np.any(share):
+            out += _carried(motion, group, change) * share
+    return out
+
+
+def _carried(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.ndarray:
+    """Torque of bodies that are there throughout: linear in them, so that one Newton-Euler pass serves for all."""
+    parameters = np.zeros((motion.n_dof, 10))
+    for body in bodies:
+        parameters[_link(motion, body)] += effect_named(body.effect).coordinates(body.values)
+    if isinstance(motion.model, Robot):
+        turned = motion.model.with_gravity(motion.model.gravity + change)
+        return torque_of_change(turned, parameters, motion.q, motion.v, motion.a)
+    moving = sum((motion.body_torque(k, p) for k, p in enumerate(parameters) if p.any()), np.zeros_like(motion.load))
+    return moving + (sum(_weight(motion, b, change) for b in bodies) if change.any() else 0.0)
+
+
+def _link(motion: Motion, body: Named) -> int:
+    return motion.n_dof - 1 if body.joint is None else body.joint
 
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
-    link = motion.n_dof - 1 if body.joint is None else body.joint
+    link = _link(motion, body)
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
     alone = None if f"weights_{link}" in motion.cache else motion.body_alone(link, weights)
     if alone is not None:  # Newton–Euler at rest

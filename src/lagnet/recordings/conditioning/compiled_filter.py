@@ -5,7 +5,6 @@ SciPy's filter takes one signal after the other, and each of its steps waits for
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 
