@@ -1,11 +1,12 @@
 """Run by the study in a process for each platform: what the first device of JAX does, printed as JSON.
 
-python -m validation.devices.measured FOLDER [--quick]
+python -m validation.devices.measured FOLDER [--quick]; the folder holds the motion.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -16,25 +17,25 @@ from typing import Any
 import jax
 import numpy as np
 
-import lagnet
 from lagnet.models.devices import chosen_devices
+from lagnet.models.files.saving import load_model
 from lagnet.models.learned_model import LearnedModel
 from lagnet.recordings.recording import Recording
 from lagnet.training.history import Report
 from lagnet.training.settings import TrainingSettings
 from lagnet.training.train import train
+from validation.devices.motion import HELD_OUT, MOTION, TRAIN, read_motion
 
 MODELS = ("delan", "delan-blackbox", "ffnn", "delan-ffnn")
 LEVELS = (0.5, 0.1, 0.01)
-RATE, WAVES = 100.0, 5
 
 
 @dataclass(frozen=True)
 class Sizes:
     """How much is measured: samples to train on and to judge by, steps by batch, samples and arms of batched parts."""
 
-    train: int = 40_000
-    held_out: int = 8_000
+    train: int = TRAIN
+    held_out: int = HELD_OUT
     steps: tuple[tuple[int, int], ...] = ((512, 1000), (4096, 300))
     batched: int = 65_536
     arms: int = 4096
@@ -43,20 +44,6 @@ class Sizes:
 
 
 QUICK = Sizes(2_000, 500, ((256, 200),), 2_048, 64, 5, 2)
-
-
-def motion(robot: Any, samples: int, seed: int) -> Recording:
-    """Sums of sines in all joints, with the torque that the bodies need."""
-    rng = np.random.default_rng(seed)
-    t = np.arange(samples)[:, None, None] / RATE
-    omega = 2.0 * np.pi * rng.uniform(0.05, 0.6, (WAVES, robot.n_dof))
-    size = rng.uniform(0.2, 0.6, omega.shape) / (1.0 + omega)
-    phase = omega * t + rng.uniform(0.0, 2.0 * np.pi, omega.shape)
-    q, v, a = (
-        np.sum(x, axis=1)
-        for x in (size * np.sin(phase), size * omega * np.cos(phase), -size * omega**2 * np.sin(phase))
-    )
-    return Recording(t[:, 0, 0], q, robot.inverse_dynamics(q, v, a), robot.joints, v=v, a=a)
 
 
 def trained(kind: str, data: tuple[Recording, Recording], batch: int, steps: int) -> tuple[LearnedModel, dict]:
@@ -121,7 +108,7 @@ def _rates(call: Callable[[], Any], count: int, repeats: int) -> dict[str, float
 
 def torques(folder: Path) -> dict[str, list]:
     """Torque of the saved weights at some samples, in both precisions."""
-    model = lagnet.load_model(folder)
+    model = load_model(folder)
     q, v, a = np.random.default_rng(3).normal(size=(3, 2000, model.n_dof))
     both = {"double": model, "single": model.in_single_precision()}
     return {name: one.inverse_dynamics(q, v, a)[::20].tolist() for name, one in both.items()}
@@ -130,10 +117,14 @@ def torques(folder: Path) -> dict[str, list]:
 def main() -> None:
     """Print what was measured; the first process to find none saves its model for all."""
     folder, sizes = Path(sys.argv[1]), QUICK if "--quick" in sys.argv else Sizes()
-    robot = lagnet.load_robot("ur5")
-    data = motion(robot, sizes.train, 0), motion(robot, sizes.held_out, 1)
+    data = read_motion(folder / MOTION, (sizes.train, sizes.held_out))
     device = chosen_devices()[0]
-    out: dict[str, Any] = {"platform": device.platform, "device": device.device_kind, "training": {}}
+    out: dict[str, Any] = {
+        "platform": device.platform,
+        "device": device.device_kind,
+        "cores": os.cpu_count(),
+        "training": {},
+    }
     models = {}
     for kind in MODELS:
         out["training"][kind] = {}

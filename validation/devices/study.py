@@ -1,6 +1,7 @@
 """Training and batched parts on every device that JAX sees, each platform in a process of its own. See README.md.
 
-python -m validation.devices.study [--quick]
+python -m validation.devices.study [--quick] [--out FOLDER]
+A platform whose figures stand in the folder is not measured again.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from validation.devices.motion import MOTION, write_motion
+
 HERE = Path(__file__).resolve().parent
 PLATFORMS = ("cpu", "cuda")
 ASK = "import jax; print(jax.devices()[0].device_kind)"
@@ -30,14 +33,17 @@ def is_there(platform: str) -> bool:
 
 
 def measure(platform: str, folder: Path, quick: bool) -> dict[str, Any]:
-    """The figures of a platform.
+    """The figures of a platform, kept in the folder.
 
     Raises:
         subprocess.CalledProcessError: something does not run there.
     """
-    words = [sys.executable, "-m", "validation.devices.measured", str(folder), *(["--quick"] if quick else [])]
-    done = subprocess.run(words, env=_environment(platform), stdout=subprocess.PIPE, text=True, check=True)
-    return json.loads(done.stdout.splitlines()[-1])
+    kept = folder / f"{platform}.json"
+    if not kept.exists():
+        words = [sys.executable, "-m", "validation.devices.measured", str(folder), *(["--quick"] if quick else [])]
+        done = subprocess.run(words, env=_environment(platform), stdout=subprocess.PIPE, text=True, check=True)
+        kept.write_text(done.stdout.splitlines()[-1], encoding="utf-8")
+    return json.loads(kept.read_text(encoding="utf-8").splitlines()[-1])
 
 
 def _environment(platform: str) -> dict[str, str]:
@@ -83,16 +89,20 @@ def main() -> int:
     """Measure, judge and, but with --quick, write result.json; 1 where a line that was measured is missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small sizes; nothing is written")
-    quick = parser.parse_args().quick
-    there = [p for p in PLATFORMS if is_there(p)]
-    with tempfile.TemporaryDirectory() as folder:
-        found = {p: measure(p, Path(folder), quick) for p in there}
+    parser.add_argument("--out", type=Path, default=None, help="folder of figures; one that is forgotten, if not given")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as forgotten:
+        folder = given.out or Path(forgotten)
+        if not (folder / MOTION).exists():
+            write_motion(folder / MOTION)
+        there = [p for p in PLATFORMS if (folder / f"{p}.json").exists() or is_there(p)]
+        found = {p: measure(p, folder, given.quick) for p in there}
     lines = judged(found)
     devices = {p: {k: v for k, v in found[p].items() if k != "torques"} if p in found else ABSENT for p in PLATFORMS}
-    result = {"study": "devices", "cores": os.cpu_count(), "cuda_measured": "cuda" in found, "devices": devices}
+    result = {"study": "devices", "cores": found["cpu"]["cores"], "cuda_measured": "cuda" in found, "devices": devices}
     text = json.dumps({**result, "lines": lines}, indent=1, ensure_ascii=False) + "\n"
     print(text)
-    if not quick:
+    if not given.quick:
         (HERE / "result.json").write_text(text, encoding="utf-8")
     return int(any(line["passed"] is False for line in lines))
 
