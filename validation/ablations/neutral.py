@@ -16,7 +16,8 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection
 from lagnet.diagnosis.selection.arm_search import Selection
 from lagnet.diagnosis.selection.holdout_gain import error_of
-from lagnet.diagnosis.selection.joint_search import JointView, best_addition, drop_immaterial
+from lagnet.diagnosis.selection.joint_search import best_addition, drop_immaterial
+from lagnet.diagnosis.selection.joint_view import JointView
 
 ROUNDING = 1e-7  # of a joint's torque: the noise floor where no noise is known
 

@@ -7,7 +7,7 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.selection.arm_search import views_of
-from lagnet.diagnosis.selection.joint_search import compatible, drop_immaterial, improve, simplify
+from lagnet.diagnosis.selection.joint_search import drop_immaterial, improve, simplify
 
 SHARP = 1e-3  # [rad/s]
 
@@ -51,21 +51,6 @@ def test_a_wider_law_at_its_least_shape_gives_way_to_its_special_case(view) -> N
 def test_what_takes_nothing_off_the_error_is_dropped(view) -> None:
     true = (number(view, "coulomb_friction"), number(view, "viscous_friction"))
     assert set(drop_immaterial(view, (*true, number(view, "rotor_inertia")))) == set(true)
-
-
-def test_a_law_never_stands_beside_its_special_case_nor_twice(view) -> None:
-    coulomb = number(view, "coulomb_friction")
-    assert not compatible(view, (coulomb,), number(view, "stribeck_friction"))
-    assert not compatible(view, (coulomb,), number(view, "asymmetric_friction"))
-    first, last = number(view, "stribeck_friction"), number(view, "stribeck_friction", least=False)
-    assert first != last
-    assert not compatible(view, (first,), last)
-
-
-def test_friction_that_drives_has_no_evidence(plant, arm, at) -> None:
-    real = plant(at(1, lambda q, v, a, t: -2.0 * v))
-    view = views_of(*(lambda p: (p.equations, p.search()))(pose(arm, real.record(43), real.record(44))))[1]
-    assert view.score((number(view, "viscous_friction"),)) == -np.inf
 
 
 def test_a_small_stribeck_curve_behind_a_large_spring_is_no_coulomb_friction(plant, arm, at) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 from lagnet.diagnosis.identifiability.block_odds import LN10, held_out_errors, log10_odds
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, unseen_block_errors
 from lagnet.diagnosis.selection.arm_search import Selection, total_score, views_of
-from lagnet.diagnosis.selection.joint_search import JointView, compatible, gains_over
+from lagnet.diagnosis.selection.joint_search import gains_over
+from lagnet.diagnosis.selection.joint_view import JointView, compatible
 
 SHOWN = 6  # rivals that the evidence lists
 

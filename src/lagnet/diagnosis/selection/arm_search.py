@@ -8,14 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection
-from lagnet.diagnosis.selection.joint_search import (
-    JointView,
-    compatible,
-    joint_inefficiency,
-    rich_start,
-    search_joint,
-    view_joint,
-)
+from lagnet.diagnosis.selection.joint_search import rich_start, search_joint
+from lagnet.diagnosis.selection.joint_view import JointView, compatible, joint_inefficiency, view_joint
 
 TRIED = 4  # arm-wide hypotheses that are searched in full at each step
 PASSES = 2  # alternations between arm-wide coefficients and local selections
