@@ -13,7 +13,8 @@ from lagnet.diagnosis.problem.noise_floor import noise_floor
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, fit_selection, sum_normal_equations
-from lagnet.diagnosis.regression.library import Library, build_library
+from lagnet.diagnosis.regression.excited_hypotheses import build_library
+from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.selection.arm_search import FIRST_INEFFICIENCY, Scales, Selection, refit_selection, search_arm
 from lagnet.recordings.conditioning.condition import Conditioned, condition

@@ -18,7 +18,7 @@ from validation.ablations.taken_out import Instead, taken_out
 SHARED = (
     "lagnet.recordings.conditioning.condition:condition",
     "lagnet.diagnosis.data_quality.inspect:screened_for",
-    "lagnet.diagnosis.regression.library:build_library",
+    "lagnet.diagnosis.regression.excited_hypotheses:build_library",
     "lagnet.diagnosis.regression.block_gram:collect_block_grams",
     "lagnet.diagnosis.problem.noise_floor:noise_floor",
     "lagnet.diagnosis.unexplained.predictability:predictability_of",

@@ -64,9 +64,7 @@ class NormalEquations:
 
     def columns(self, joint: int, selection: Iterable[int]) -> np.ndarray:
         """Column numbers of the selected hypotheses that act on a joint."""
-        slots = self.library.slots[joint]
-        picked = [np.arange(slots[i].start, slots[i].stop) for i in selection if i in slots]
-        return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
+        return self.library.columns_of(joint, selection)
 
 
 def sum_normal_equations(library: Library, grams: BlockGrams, limits: DecisionLimits | None = None) -> NormalEquations:

@@ -100,9 +100,7 @@ class JointSystem:
 
     def columns(self, selection: Sequence[int]) -> np.ndarray:
         """Column numbers of a selection, shape (k,)."""
-        slots = self.library.slots[self.joint]
-        picked = [np.arange(slots[i].start, slots[i].stop) for i in selection]
-        return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
+        return self.library.columns_of(self.joint, selection)
 
 
 def joint_system(equations: NormalEquations, joint: int, taken: dict[int, np.ndarray]) -> JointSystem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -84,6 +84,16 @@ class Library:
     def slots(self) -> tuple[dict[int, slice], ...]:
         """For each joint, the columns of each hypothesis that acts on it."""
         return tuple(self._slots(j) for j in range(self.n_dof))
+
+    def columns_of(self, joint: int, selection: Iterable[int]) -> np.ndarray:
+        """Column numbers at a joint of those selected hypotheses that act on it, shape (k,)."""
+        places = self._places[joint]
+        picked = [places[i] for i in selection if i in places]
+        return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
+
+    @cached_property
+    def _places(self) -> tuple[dict[int, np.ndarray], ...]:
+        return tuple({i: np.arange(s.start, s.stop) for i, s in slots.items()} for slots in self.slots)
 
     def _slots(self, joint: int) -> dict[int, slice]:
         found, at = {}, 0
@@ -199,7 +209,7 @@ class Library:
 
     def _columns(self, index: int, motion: Motion, problem: Problem) -> np.ndarray:
         h, known = self.hypotheses[index], problem.known
-        columns = h.law.columns(_as_seen(motion, known, h.law), h.joint, dict(h.shape))
+        columns = h.law.columns(as_seen(motion, known, h.law), h.joint, dict(h.shape))
         if known and isinstance(h.law, GravityTilt):
             return tilt_columns(motion, h.law, dict(h.shape), known, columns)
         if known and h.effect == OFFSET and h.joint is not None:
@@ -210,7 +220,7 @@ class Library:
         return columns
 
 
-def _as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:
+def as_seen(motion: Motion, known: tuple[NamedEffect, ...], law: Effect) -> Motion:
     """The motion with the torque τ_nominal + Σ τ_body that a law acts on."""
     if not known or law.stage == "body":
         return motion
@@ -228,43 +238,3 @@ def _sign_model(problem: Problem, joint: int) -> tuple[float, bool, float]:
     straight = problem.straight is not None and bool(problem.straight[joint])
     held = 0.0 if problem.held is None else max(float(problem.held[joint]), 0.0)
     return float(problem.slow[joint]), straight, held
-
-
-def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
-    """Every effect of the catalogue at every joint, except those that the recorded motion does not excite."""
-    summary = problem.summary()
-    probe = _head(summary)
-    has_bodies = hasattr(problem.nominal, "link_regressor")
-    hypotheses: list[Hypothesis] = []
-    widths: list[int] = []
-    abstentions: list[Abstention] = []
-    for effect in effects or tuple(e for e in CATALOGUE.values() if not e.is_transient):
-        if effect.is_body and problem.given is not None:  # the links are free already
-            continue
-        for joint in _places(effect, problem.n_dof):
-            seen = _as_seen(summary, problem.known, effect)
-            reason = _reason_against(effect, seen, joint, has_bodies)
-            shapes = () if reason else effect.shapes(seen, joint)
-            if reason:
-                abstentions.append(Abstention(effect.name, joint, reason))
-            for shape in shapes:
-                hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
-                widths.append(effect.columns(probe, joint, shape).shape[-1])
-    return Library(tuple(hypotheses), tuple(widths), problem.n_dof, tuple(abstentions))
-
-
-def _places(effect: Effect, n_dof: int) -> list[int | None]:
-    return [j for j in ((None,) if effect.whole_arm else range(n_dof)) if effect.exists_at(j)]
-
-
-def _reason_against(effect: Effect, motion: Motion, joint: int | None, has_bodies: bool) -> str | None:
-    if effect.needs_bodies and not has_bodies:
-        return "the nominal model has no kinematics from which a body's torque could be computed"
-    return effect.excitation(motion, joint)
-
-
-def _head(motion: Motion, n: int = 40) -> Motion:
-    rows = slice(0, n)
-    time = np.arange(motion.time[rows].size, dtype=float) * 0.01
-    q, v, a, load = (x[rows] for x in (motion.q, motion.v, motion.a, motion.load))
-    return Motion(time, q, v, a, load, motion.slow, motion.model, straight=motion.straight)

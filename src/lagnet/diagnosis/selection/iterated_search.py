@@ -15,7 +15,8 @@ from lagnet.diagnosis.nominal.mounting import mounting_of
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
-from lagnet.diagnosis.regression.library import Library, build_library
+from lagnet.diagnosis.regression.excited_hypotheses import build_library
+from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.arm_search import Selection, search_arm
 from lagnet.diagnosis.selection.gain_exchange import exchange_gains
 from lagnet.diagnosis.selection.named_effects import named_effects
