@@ -2,8 +2,9 @@
 
 A wrong name for unlisted physics is worse than none. An effect is tested at the joints where it helps, and stays if it
 passes at one of them: another joint may have physics of its own. A residual on held-out motion alone rejects no effect,
-unless it can be predicted from the fitted motion. An effect smaller than the known error of the nominal model cannot be
-distinguished from it; one that may be the error of a learned model stays only if it explains many times the residual.
+unless it can be predicted from the fitted motion. One that nothing predicts is a disturbance: an effect must explain
+half of it. An effect smaller than the known error of the nominal model cannot be distinguished from it; one that may be
+the error of a learned model stays only if it explains many times the residual.
 At a joint whose held-out error all effects together make larger than that of the nominal model, effects with a torque
 larger than the mismatch are rejected, since they cancel each other on the fitted motion alone; an arm-wide effect that
 explains another joint stays.
@@ -38,6 +39,7 @@ class LackOfFit(RejectionRule):
         little: residual share of a joint's mismatch, up to which no effect is rejected: real arms always have some.
         much: residual share, from which on its predictability is tested.
         predictable: share of the residual that a flexible model predicts, from which on it is physics, not disturbance.
+        disturbed: share of a residual that is not predictable, a disturbance, that an effect must explain.
         stands: an effect stays if it alone explains this many times the predictable residual.
         most_left: residual share at a joint that still counts as explained by an arm-wide effect.
         worse: held-out error over the nominal one, from which the effects together harm a joint.
@@ -52,6 +54,7 @@ class LackOfFit(RejectionRule):
     little: float = 0.01
     much: float = 0.05
     predictable: float = 0.3
+    disturbed: float = 0.5
     stands: float = 10.0
     most_left: float = 0.2
     worse: float = 1.5
@@ -73,10 +76,12 @@ class LackOfFit(RejectionRule):
         """By joint, the share of its mismatch that an effect must explain there."""
         both = {j: min(s, fitted.get(j, 0.0)) for j, s in held.items()}
         needed = {j: s for j, s in both.items() if s > self.little}
-        if not was_learned(candidate.problem.nominal):  # the error of a network is a function of the arm's state, too
-            much = {j: s for j, s in held.items() if s > self.much}
-            needed |= {j: self.stands * s for j, s in self._predictable(candidate, much).items()}
-        return needed
+        if was_learned(candidate.problem.nominal):  # the error of a network is a function of the arm's state, too
+            return needed
+        much = {j: s for j, s in held.items() if s > self.much}
+        physics = {j: self.stands * s for j, s in self._predictable(candidate, much).items()}
+        disturbance = {j: self.disturbed * s for j, s in needed.items() if j in much}
+        return needed | disturbance | physics
 
     def _asked(
         self,
