@@ -81,24 +81,20 @@ class Library:
         return tuple(map(tuple, own))
 
     @cached_property
-    def slots(self) -> tuple[dict[int, slice], ...]:
-        """For each joint, the columns of each hypothesis that acts on it."""
+    def slots(self) -> tuple[dict[int, np.ndarray], ...]:
+        """For each joint, the column numbers of each hypothesis that acts on it."""
         return tuple(self._slots(j) for j in range(self.n_dof))
 
     def columns_of(self, joint: int, selection: Iterable[int]) -> np.ndarray:
         """Column numbers at a joint of those selected hypotheses that act on it, shape (k,)."""
-        places = self._places[joint]
-        picked = [places[i] for i in selection if i in places]
+        slots = self.slots[joint]
+        picked = [slots[i] for i in selection if i in slots]
         return np.concatenate(picked) if picked else np.zeros(0, dtype=int)
 
-    @cached_property
-    def _places(self) -> tuple[dict[int, np.ndarray], ...]:
-        return tuple({i: np.arange(s.start, s.stop) for i, s in slots.items()} for slots in self.slots)
-
-    def _slots(self, joint: int) -> dict[int, slice]:
+    def _slots(self, joint: int) -> dict[int, np.ndarray]:
         found, at = {}, 0
         for i in (*self.local[joint], *self.reaching):
-            found[i] = slice(at, at + self.widths[i])
+            found[i] = np.arange(at, at + self.widths[i])
             at += self.widths[i]
         return found
 
@@ -129,7 +125,7 @@ class Library:
     def _of_width(self, joint: int, width: int) -> tuple[np.ndarray, np.ndarray]:
         own = self.local[joint]
         places = np.array([n for n, i in enumerate(own) if self.widths[i] == width])
-        starts = np.array([self.slots[joint][own[n]].start for n in places])
+        starts = np.array([self.slots[joint][own[n]][0] for n in places])
         return places, starts[:, None] + np.arange(width)
 
     @cached_property

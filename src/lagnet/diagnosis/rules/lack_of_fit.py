@@ -47,7 +47,10 @@ class LackOfFit(RejectionRule):
     """
 
     name: ClassVar[str] = "lack_of_fit"
-    statement: ClassVar[str] = "an effect explains more of a joint than all effects together leave unexplained there"
+    statement: ClassVar[str] = (
+        "an effect explains more of a joint than all effects together leave unexplained there, or half of what nothing "
+        "predicts"
+    )
     source: ClassVar[str] = ""
     together: ClassVar[bool] = True
 
