@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.transients.separation import is_resolved
 from lagnet.models.corrected.folder import load_corrected, save_corrected
 from lagnet.models.corrected.model import NamedEffect
 from lagnet.models.files.loading import load_any
@@ -155,6 +157,13 @@ def test_without_an_event_nothing_acts_for_a_while(plant, arm, at) -> None:
     result = diagnose([real.record(31), real.record(32)], arm, [real.record(33)])
     assert all(e.interval_s is None for e in result.effects)
     assert result.verdict.warnings == ()
+
+
+@pytest.mark.parametrize(("length", "resolved"), [(0.1, False), (0.2, True)])
+def test_what_is_shorter_than_a_period_of_the_low_pass_has_no_name(length, resolved) -> None:
+    values = dict.fromkeys(("Fx", "Fy", "Fz", "px", "py", "pz"), 1.0)
+    push = NamedEffect("contact_force", None, values, (5.0, 5.0 + length))
+    assert is_resolved(SimpleNamespace(effect=push), bandwidth=6.9) is resolved
 
 
 def test_an_interval_belongs_to_one_recording(arm) -> None:

@@ -23,6 +23,7 @@ HELPS = 0.5  # of the error inside an interval that must remain at most, on part
 UNNAMED = 3000.0  # nats of an interval that no law explains, below which it may be a burst of persistent physics
 ELSEWHERE = 10.0  # nats that joints other than the strongest must add: no force on the tool moves one joint alone
 LEAST_ELSEWHERE = 0.01  # of all nats
+RESOLVED = 1.0  # periods of the low-pass: what is shorter has its shape, whatever it was
 NOTICED = 0.01  # of the torque: transients smaller than this are not claimed
 
 
@@ -45,7 +46,7 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
         scan: the intervals.
     """
     pairs = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
-    good = [(s, f) for s, f in pairs if _convinces(f)]
+    good = [(s, f) for s, f in pairs if _convinces(f) and is_resolved(f, problem.bandwidth)]
     bursts = _bursts(pairs)
     others = (s for s in scan.events if not any(s is t for t in (*bursts, *(t for t, _ in good))))
     unnamed = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
@@ -72,6 +73,12 @@ def _convinces(fit: EventFit) -> bool:
         and gain > NOTICED**2
         and not _local(fit)
     )
+
+
+def is_resolved(fit: EventFit, bandwidth: float) -> bool:
+    """Whether the event is longer than a period of the low-pass: a shorter one may be an outlier as well as a push."""
+    start, end = fit.effect.interval or (-np.inf, np.inf)
+    return end - start >= RESOLVED / bandwidth
 
 
 def _local(fit: EventFit) -> bool:
