@@ -9,6 +9,7 @@ from lagnet.diagnosis.regression.library import Abstention, Hypothesis, Library,
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.motion import Motion
+from lagnet.models.corrected.modelled import modelled_weight
 
 
 def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -> Library:
@@ -29,7 +30,8 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
             if reason:
                 abstentions.append(Abstention(effect.name, joint, reason))
             for shape in shapes:
-                hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items()))))
+                modelled = modelled_weight(problem.nominal, effect.name, joint)
+                hypotheses.append(Hypothesis(effect.name, joint, tuple(sorted(shape.items())), modelled))
                 widths.append(effect.columns(probe, joint, shape).shape[-1])
     return Library(tuple(hypotheses), tuple(widths), problem.n_dof, tuple(abstentions))
 

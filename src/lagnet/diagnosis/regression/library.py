@@ -22,16 +22,25 @@ MOST_KEPT = 400e6  # bytes of columns that are kept for the next search
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """One effect at one joint (None: the whole arm) with the values of its nonlinear parameters."""
+    """One effect at one joint (None: the whole arm) with the values of its nonlinear parameters.
+
+    `modelled` is how much of a law with one weight the nominal model holds: the weight may be as much below zero.
+    """
 
     effect: str
     joint: int | None
     shape: tuple[tuple[str, float], ...] = ()
+    modelled: float = 0.0
 
     @property
     def law(self) -> Effect:
         """The effect's class in the catalogue."""
         return CATALOGUE[self.effect]
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest coefficients of its columns."""
+        lower, upper = self.law.bounds(dict(self.shape))
+        return lower - self.modelled * (np.arange(lower.size) == 0), upper
 
     @property
     def place(self) -> tuple[str, int | None]:
@@ -145,7 +154,7 @@ class Library:
         out = []
         for joint in range(self.n_dof):
             own = (self.hypotheses[i] for i in self.slots[joint])
-            pairs = [h.law.bounds(dict(h.shape)) for h in own]
+            pairs = [h.bounds() for h in own]
             lower, upper = zip(*pairs, strict=True) if pairs else ((np.zeros(0),), (np.zeros(0),))
             out.append((np.concatenate(lower), np.concatenate(upper)))
         return tuple(out)

@@ -12,5 +12,6 @@ def named_effects(library: Library, found: Selection) -> tuple[NamedEffect, ...]
     out = []
     for i in found.indices:
         h = library.hypotheses[i]
-        out.append(NamedEffect(h.effect, h.joint, h.law.values(found.fit.coefficients[i], dict(h.shape))))
+        values = h.law.values(found.fit.coefficients[i], dict(h.shape))
+        out.append(NamedEffect(h.effect, h.joint, values, modelled=h.modelled))
     return tuple(out)

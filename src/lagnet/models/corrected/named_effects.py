@@ -28,6 +28,7 @@ class NamedEffect:
         values: parameters by name, SI units.
         interval: (start, end) [s] outside which the effect is absent; None: always there.
         recording: index of the fitted recording in which it was found; nowhere else does it act. None: in any.
+        modelled: how much of its first parameter the nominal model holds: by so much it may be below zero.
     """
 
     effect: str
@@ -35,6 +36,7 @@ class NamedEffect:
     values: Mapping[str, float]
     interval: tuple[float, float] | None = None
     recording: int | None = None
+    modelled: float = 0.0
 
     @property
     def key(self) -> tuple:
@@ -54,6 +56,7 @@ class NamedEffect:
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""
         lower, upper = effect_named(self.effect).coordinate_bounds()
+        lower = lower - self.modelled * (np.arange(lower.size) == 0)
         n_edges = len(self.interval or ())
         return np.append(lower, np.full(n_edges, -np.inf)), np.append(upper, np.full(n_edges, np.inf))
 
