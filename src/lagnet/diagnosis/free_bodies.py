@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.identified.borne_out import powers_beside
+from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.diagnosis.problem.residuals import power_of, stacked
+from lagnet.diagnosis.problem.residuals import power_of
 from lagnet.diagnosis.regression.library import of_motion_alone
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.state import DiagnosisState
@@ -86,7 +88,7 @@ def gains_among(effects: Sequence[NamedEffect]) -> int:
     return sum(e.effect == "torque_gain" for e in effects)
 
 
-def beside_free_bodies(problem: Problem, noise: np.ndarray) -> Problem | None:
+def beside_free_bodies(problem: Problem, noise: np.ndarray, found: Identified | None) -> Problem | None:
     """The problem with the links as the fitted recordings determine them; None where no real links explain these.
 
     Links that differ from one recording to the next, as under a load that is mounted anew, explain none of them.
@@ -94,18 +96,24 @@ def beside_free_bodies(problem: Problem, noise: np.ndarray) -> Problem | None:
     Args:
         problem: recordings and nominal model as given.
         noise: shape (dof,), noise floor [N m].
+        found: the identified layer without names.
     """
     if not is_robot_model(problem.nominal):
         return None
-    found = identify(problem, ())
     if found is None or found.layer.bodies is None or not explains(problem, problem.fit, (), found.layer, noise):
         return None
     robot: RobotModel = problem.nominal
-    parameters = robot.inertial_parameters() + found.layer.bodies
-    if not np.all(is_physically_consistent(parameters)):
+    if not np.all(is_physically_consistent(robot.inertial_parameters() + found.layer.bodies)):
         return None
-    posed = with_nominal(problem, robot.with_inertial_parameters(parameters))
+    posed = with_nominal(problem, with_changed_bodies(robot, found.layer.bodies))
     return replace(posed, given=problem.nominal)
+
+
+def with_changed_bodies(model: Any, change: np.ndarray) -> Any:
+    """A model whose links differ by ten parameters each, shape (dof, 10); a corrected one keeps what it corrects."""
+    if isinstance(model, CorrectedModel):
+        return replace(model, nominal=with_changed_bodies(model.nominal, change))
+    return model.with_inertial_parameters(model.inertial_parameters() + change)
 
 
 def explains(
@@ -116,16 +124,7 @@ def explains(
     noise: np.ndarray,
 ) -> bool:
     """Whether effects and an identified layer leave each joint mean r² within twice the noise or 0.1 of the nominal."""
-    model = CorrectedModel(
-        problem.nominal, tuple(effects), problem.slow, problem.held, problem.straight, identified=layer
-    )
-    rest = [
-        problem.reduce(p, p.tau - replace(model, recording=p.origin).torque_along(p.time, p.q, p.v, p.a))
-        for p in pieces
-    ]
-    nominal, valid = stacked(problem, pieces)
-    count = np.maximum(1, valid.sum(axis=0))
-    before, after = (np.sum((r * valid) ** 2, axis=0) / count for r in (nominal, np.concatenate(rest)))
+    before, after = powers_beside(problem, pieces, effects, layer)
     floor = noise**2
     return bool(np.all((after <= FAR * floor) | (after - floor <= LITTLE * (before - floor))))
 

@@ -99,7 +99,7 @@ def _beside_free_links(candidate: Candidate, given: Inputs) -> DiagnosisState | 
     refuted = bodies_are_refuted(candidate)
     if not refuted and not are_scaled_widely(candidate):
         return None
-    free = beside_free_bodies(candidate.problem, given.noise)
+    free = beside_free_bodies(candidate.problem, given.noise, candidate.identified)
     if free is None:
         return None
     beside = run_pipeline(free, given)

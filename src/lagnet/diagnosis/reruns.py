@@ -15,6 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.free_bodies import BETTER, against_given, beside_free_bodies, explains, with_nominal
+from lagnet.diagnosis.identified.borne_out import powers_beside
+from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
@@ -28,6 +30,8 @@ from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.named_effects import torque_with
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
+MUCH = 0.05  # of a joint's mismatch: if names leave so much, links that differ may explain it
+OUTDONE = 3.0  # times the error of the links and functions of motion that the recordings determine
 CLEARLY = 2.0  # times the noise that it must exceed
 FACTORS = (0.5, 0.25)  # of the bandwidth
 LEAST = 2.5  # [Hz]
@@ -43,15 +47,18 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     Args:
         again: another run on the same recordings against another nominal model.
     """
-    if first.problem.given is not None or not is_puzzled(first) or not is_identified(first):
+    if first.problem.given is not None or not leaves_much(first):
         return first
-    free = beside_free_bodies(first.problem, first.noise)
+    found = identify(first.problem, ())
+    puzzled = is_puzzled(first) and is_identified(first)
+    if not puzzled and not is_outdone(first, found):
+        return first
+    free = beside_free_bodies(first.problem, first.noise, found)
     if free is None:
         return first
     second = again(free)
-    if is_puzzled(against_given(second)):
-        return first
-    return replace(second, rejected=(*first.rejected, *second.rejected))  # why no body was named stays told
+    better = not is_puzzled(against_given(second)) if puzzled else _log_error(second) < _log_error(first) - BETTER
+    return replace(second, rejected=(*first.rejected, *second.rejected)) if better else first  # why no body stays told
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
@@ -77,6 +84,20 @@ def is_puzzled(state: DiagnosisState) -> bool:
     return any(joint.above and joint.share > PUZZLING and joint.power > limit for joint, limit in left)
 
 
+def leaves_much(state: DiagnosisState) -> bool:
+    """Whether names leave a twentieth of some joint's mismatch or more."""
+    return any(joint.above and joint.share > MUCH for joint in state.sizes)
+
+
+def is_outdone(state: DiagnosisState, found: Identified | None) -> bool:
+    """Whether a layer without names leaves less than a third of what names leave at a joint where that is much."""
+    if found is None:
+        return False
+    _, after = powers_beside(state.problem, state.problem.holdout, (), found.layer)
+    left = zip(state.sizes, after, strict=True)
+    return any(joint.above and joint.share > MUCH and power < joint.power / OUTDONE for joint, power in left)
+
+
 def is_identified(state: DiagnosisState) -> bool:
     """Whether bodies and functions of motion without a name explain what is left: then nothing drowns what holds."""
     found = state.identified
@@ -95,6 +116,12 @@ def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[D
         except DiagnosisError:  # recordings too short for so slow a filter
             break
     return out
+
+
+def _log_error(state: DiagnosisState) -> float:
+    """Σ_j ln max(mean r_j², σ_j²) on held-out samples."""
+    power = [joint.power for joint in state.sizes]
+    return float(np.sum(np.log(np.maximum(power, np.maximum(state.noise, 1e-12) ** 2))))
 
 
 def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventInterval]) -> float:

@@ -26,6 +26,7 @@ HARMFUL = 1.2  # times the squared error of a joint without the layer, all sampl
 NEGLIGIBLE = 0.01  # of the standard deviation of a joint's torque
 POSES = 50  # at which the mass matrix is tested
 INDEFINITE = 1e-9  # −(least eigenvalue of a mass matrix) over the largest torque: rounding
+NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
 MOST_SAMPLES = 120_000  # at full rate: of longer recordings, pieces spread over them
 
 
@@ -42,6 +43,12 @@ class Identified:
     layer: IdentifiedLayer
     design: Design
     choice: Choice
+
+    def half_width(self, term: MotionTerm) -> float:
+        """Half of the 95 % interval of the weight of one of the layer's functions."""
+        k = self.design.n_bodies + self.design.terms.index(term)
+        scale = self.design.scale[k]
+        return float(NORMAL_95 * np.sqrt(max(self.choice.ridge.covariance[k, k], 0.0)) / scale) if scale > 0 else 0.0
 
 
 def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | None:

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.identified.fit import Identified
-from lagnet.models.corrected.motion_terms import BENDS, MotionTerm, bend
+from lagnet.diagnosis.identified.fit import NORMAL_95, Identified
+from lagnet.models.corrected.motion_terms import BENDS, bend
 from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
 
-NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
 NOTABLE = 0.02  # of a joint's torque: a smaller change is not reported
 SPEEDS = 20  # points of a friction curve in each direction, closer near rest, where it bends; rest itself is a jump
 NAMED_OPEN = 3  # undetermined combinations that a sentence names, each by its first parameter
@@ -83,7 +82,7 @@ def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
     own = [(i, t) for i, t in enumerate(found.layer.terms) if t.joint == joint and t.other is None]
     entries = []
     for i, term in own:
-        weight, half = float(found.layer.weights[i]), NORMAL_95 * _spread(found, term)
+        weight, half = float(found.layer.weights[i]), found.half_width(term)
         if weight:
             entries.append(
                 {"term": term.kind, "scale": term.scale, "weight": weight, "ci95": [weight - half, weight + half]}
@@ -91,12 +90,6 @@ def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
     if not any(e["weight"] for e in entries):
         return None
     return {"joint": name, "terms": entries, "friction_curve": _curve(found, joint)}
-
-
-def _spread(found: Identified, term: MotionTerm) -> float:
-    k = found.design.n_bodies + found.design.terms.index(term)
-    scale = found.design.scale[k]
-    return float(np.sqrt(max(found.choice.ridge.covariance[k, k], 0.0)) / scale) if scale > 0 else 0.0
 
 
 def _curve(found: Identified, joint: int) -> dict[str, list[float]]:

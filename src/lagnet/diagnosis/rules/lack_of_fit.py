@@ -3,8 +3,10 @@
 A wrong name for unlisted physics is worse than none. An effect is tested at the joints where it helps, and stays if it
 passes at one of them: another joint may have physics of its own. A residual on held-out motion alone rejects no effect,
 unless it can be predicted from the fitted motion. One that nothing predicts is a disturbance: an effect must explain
-half of it. An effect smaller than the known error of the nominal model cannot be distinguished from it; one that may be
-the error of a learned model stays only if it explains many times the residual.
+a tenth of it. Of one that is predictable it must explain as much, or where it is large many times as much; but where
+the identified layer bears the effect out, twice what that layer leaves. An effect smaller than the known error of the
+nominal model cannot be distinguished from it; one that may be the error of a learned model stays only if it explains
+many times the residual.
 At a joint whose held-out error all effects together make larger than that of the nominal model, effects with a torque
 larger than the mismatch are rejected, since they cancel each other on the fitted motion alone; an arm-wide effect that
 explains another joint stays.
@@ -18,6 +20,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from lagnet.diagnosis.identified.borne_out import is_borne_out
 from lagnet.diagnosis.nominal.learned_error import Name, may_be_its_error, was_learned
 from lagnet.diagnosis.rules.candidate import Candidate, Part
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
@@ -37,10 +40,11 @@ class LackOfFit(RejectionRule):
 
     Args:
         little: residual share of a joint's mismatch, up to which no effect is rejected: real arms always have some.
-        much: residual share, from which on its predictability is tested.
-        predictable: share of the residual that a flexible model predicts, from which on it is physics, not disturbance.
+        much: residual share, from which on what is predictable is physics of its own, not the shape of a named law.
+        predictable: share of the residual that a flexible model predicts, from which on it is no disturbance.
         disturbed: share of a residual that is not predictable, a disturbance, that an effect must explain.
         stands: an effect stays if it alone explains this many times the predictable residual.
+        borne_out: and this many times what the identified layer leaves, if that bears the effect out.
         most_left: residual share at a joint that still counts as explained by an arm-wide effect.
         worse: held-out error over the nominal one, from which the effects together harm a joint.
         outgrows: share of the known error of the nominal model that an effect must explain.
@@ -48,8 +52,8 @@ class LackOfFit(RejectionRule):
 
     name: ClassVar[str] = "lack_of_fit"
     statement: ClassVar[str] = (
-        "an effect explains more of a joint than all effects together leave unexplained there, or half of what nothing "
-        "predicts"
+        "an effect explains more of a joint than all effects together leave unexplained there, a tenth of what nothing "
+        "predicts, or twice what the identified layer leaves where that bears it out"
     )
     source: ClassVar[str] = ""
     together: ClassVar[bool] = True
@@ -57,8 +61,9 @@ class LackOfFit(RejectionRule):
     little: float = 0.01
     much: float = 0.05
     predictable: float = 0.3
-    disturbed: float = 0.5
+    disturbed: float = 0.1
     stands: float = 10.0
+    borne_out: float = 2.0
     most_left: float = 0.2
     worse: float = 1.5
     outgrows: float = 0.5
@@ -81,10 +86,17 @@ class LackOfFit(RejectionRule):
         needed = {j: s for j, s in both.items() if s > self.little}
         if was_learned(candidate.problem.nominal):  # the error of a network is a function of the arm's state, too
             return needed
-        much = {j: s for j, s in held.items() if s > self.much}
-        physics = {j: self.stands * s for j, s in self._predictable(candidate, much).items()}
-        disturbance = {j: self.disturbed * s for j, s in needed.items() if j in much}
+        predictable = self._predictable(candidate, {j: s for j, s in held.items() if s > self.little})
+        disturbance = {j: self.disturbed * s for j, s in needed.items() if j not in predictable}
+        physics = {j: self.stands * s for j, s in predictable.items() if s > self.much}
         return needed | disturbance | physics
+
+    def _is_borne_out(self, candidate: Candidate, index: int, share: float, joint: int) -> bool:
+        """Whether the identified layer bears an effect out, and leaves half of the share that it explains or less."""
+        found, effect = candidate.identified, candidate.effects[candidate.indices.index(index)]
+        if found is None or not is_borne_out(found, effect):
+            return False
+        return share >= max(self.borne_out * candidate.left_by_layer[joint], self._ignored(candidate)[joint])
 
     def _asked(
         self,
@@ -100,9 +112,11 @@ class LackOfFit(RejectionRule):
         h, part = candidate.library.hypotheses[index], candidate.holdout_gain[index]
         at = max(part.at_joints, key=lambda j: part.shares[j] - least[j])
         share, joint = float(part.shares[at]), candidate.problem.joints[at]
-        if not any(part.shares[j] >= least[j] for j in part.at_joints):
-            detail = f"it explains {percent(share, 3)} of {joint}, where more than {percent(least[at], 3)} is asked for"
-            return self.rejection(candidate, index, share, float(least[at]), detail)
+        explains = any(part.shares[j] >= least[j] for j in part.at_joints)
+        if not explains and not self._is_borne_out(candidate, index, share, at):
+            return self.rejection(
+                candidate, index, share, float(least[at]), _too_little(joint, share, float(least[at]))
+            )
         if h.place in doubtful and not outshines(part, self.stands, held, fitted):
             detail = (
                 f"it may be the error of the learned model: at {joint} it explains less than ten times what is left"
@@ -160,6 +174,14 @@ def left_shares(candidate: Candidate, part: Part) -> Shares:
     before, after = (_power(candidate.residual(part, e)) - power for e in ((), None))
     above = (before > 0) & (after > (candidate.limits.above_noise**2 - 1.0) * power)
     return {int(j): float(after[j] / before[j]) for j in np.flatnonzero(above)}
+
+
+def _too_little(joint: str, share: float, least: float) -> str:
+    """The reason for a rejection by shares of a joint's mismatch; more than all of it cannot be asked for."""
+    explains = f"it explains {percent(share, 3)} of {joint}"
+    if least < 1.0:
+        return f"{explains}, where more than {percent(least, 3)} is asked for"
+    return f"{explains}, beside too much that motion predicts and no effect explains"
 
 
 def _predicted(candidate: Candidate, joint: int) -> Iterator[float]:
