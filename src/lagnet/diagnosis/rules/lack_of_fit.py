@@ -93,6 +93,8 @@ class LackOfFit(RejectionRule):
 
     def _is_borne_out(self, candidate: Candidate, index: int, share: float, joint: int) -> bool:
         """Whether the identified layer bears an effect out, and leaves half of the share that it explains or less."""
+        if was_learned(candidate.problem.nominal):  # the layer would bear out what the network has wrong
+            return False
         found, effect = candidate.identified, candidate.effects[candidate.indices.index(index)]
         if found is None or not is_borne_out(found, effect):
             return False
