@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from tests.diagnosis.posed import pose
 
+from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.reruns import MUCH, is_outdone, leaves_much
 from lagnet.diagnosis.unexplained.remainder import remainder_of, remainder_sizes
@@ -44,3 +45,13 @@ def test_what_names_explain_asks_for_no_links(plant, arm) -> None:
     after = remainder_of(posed.problem, candidate.effects)
     state: Any = SimpleNamespace(problem=posed.problem, sizes=remainder_sizes(posed.problem, after, posed.noise))
     assert not leaves_much(state)
+
+
+@pytest.mark.slow
+def test_a_load_keeps_its_name_beside_friction_that_no_law_has(plant, arm) -> None:
+    loaded = arm.with_payload(1.5, np.array([0.05, 0.08, 0.15]), 0.006 * np.eye(3))
+    size = plant().usual_torque()
+    real = plant(lambda q, v, a, body: 0.4 * size * np.tanh(v / 0.5) * (1.0 + np.cos(3.0 * q)), robot=loaded)
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert any(u.share_of_mismatch > MUCH for u in result.verdict.unexplained)
+    assert next(e for e in result.effects if e.effect == "payload").value("m") == pytest.approx(1.5, rel=0.2)

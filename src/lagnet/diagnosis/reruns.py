@@ -49,8 +49,10 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     """
     if first.problem.given is not None or not leaves_much(first):
         return first
-    found = identify(first.problem, ())
     puzzled = is_puzzled(first) and is_identified(first)
+    if not puzzled and any(effect_named(e.effect).is_body for e in first.effects):  # a load says more than free links
+        return first
+    found = identify(first.problem, ())
     if not puzzled and not is_outdone(first, found):
         return first
     free = beside_free_bodies(first.problem, first.noise, found)
