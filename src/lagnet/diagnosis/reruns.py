@@ -16,7 +16,7 @@ import numpy as np
 
 from lagnet.diagnosis.free_bodies import BETTER, against_given, beside_free_bodies, explains, with_nominal
 from lagnet.diagnosis.identified.borne_out import powers_beside
-from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
@@ -31,7 +31,7 @@ from lagnet.models.corrected.named_effects import torque_with
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
 MUCH = 0.05  # of a joint's mismatch: if names leave so much, links that differ may explain it
-OUTDONE = 3.0  # times the error of the links and functions of motion that the recordings determine
+OUTDONE = 3.0  # times the error beside the links and functions of motion that the recordings determine
 CLEARLY = 2.0  # times the noise that it must exceed
 FACTORS = (0.5, 0.25)  # of the bandwidth
 LEAST = 2.5  # [Hz]
@@ -47,15 +47,12 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     Args:
         again: another run on the same recordings against another nominal model.
     """
-    if first.problem.given is not None or not leaves_much(first):
+    if first.problem.given is not None:
         return first
     puzzled = is_puzzled(first) and is_identified(first)
-    if not puzzled and any(effect_named(e.effect).is_body for e in first.effects):  # a load says more than free links
+    if not puzzled and not is_outdone(first):
         return first
-    found = identify(first.problem, ())
-    if not puzzled and not is_outdone(first, found):
-        return first
-    free = beside_free_bodies(first.problem, first.noise, found)
+    free = beside_free_bodies(first.problem, first.noise, identify(first.problem, ()))
     if free is None:
         return first
     second = again(free)
@@ -86,18 +83,19 @@ def is_puzzled(state: DiagnosisState) -> bool:
     return any(joint.above and joint.share > PUZZLING and joint.power > limit for joint, limit in left)
 
 
-def leaves_much(state: DiagnosisState) -> bool:
-    """Whether names leave a twentieth of some joint's mismatch or more."""
-    return any(joint.above and joint.share > MUCH for joint in state.sizes)
+def is_outdone(state: DiagnosisState) -> bool:
+    """Whether the identified layer leaves less than a third of what names leave at a joint where that is much.
 
-
-def is_outdone(state: DiagnosisState, found: Identified | None) -> bool:
-    """Whether a layer without names leaves less than a third of what names leave at a joint where that is much."""
+    Not beside a body that has a name: a load says more than links that differ.
+    """
+    if any(effect_named(e.effect).is_body for e in state.effects):
+        return False
+    much = [j for j, joint in enumerate(state.sizes) if joint.above and joint.share > MUCH]
+    found = state.identified if much else None
     if found is None:
         return False
-    _, after = powers_beside(state.problem, state.problem.holdout, (), found.layer)
-    left = zip(state.sizes, after, strict=True)
-    return any(joint.above and joint.share > MUCH and power < joint.power / OUTDONE for joint, power in left)
+    _, after = powers_beside(state.problem, state.problem.holdout, state.effects, found.layer)
+    return any(after[j] < state.sizes[j].power / OUTDONE for j in much)
 
 
 def is_identified(state: DiagnosisState) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -54,6 +54,7 @@ class DiagnosisState:
         ambiguous: causes that too many names explain equally.
         supposed: the persistent effects with the likeliest name of every ambiguous cause; empty: those of `refit`.
         judged: the problem with free links beside which the names were judged; None: `problem`.
+        layers: the identified layer by what it stands beside, computed once; shared by a state and its variants.
     """
 
     problem: Problem
@@ -74,6 +75,7 @@ class DiagnosisState:
     ambiguous: tuple[AmbiguousCause, ...] = ()
     supposed: tuple[NamedEffect, ...] = ()
     judged: Problem | None = None
+    layers: dict = field(default_factory=dict, repr=False)
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -105,10 +107,13 @@ class DiagnosisState:
         """The remainder of each joint: power, residual share and predictable share."""
         return joint_remainders(self.problem, self.after, self.sizes, self.noise, self.seed)
 
-    @cached_property
+    @property
     def identified(self) -> Identified | None:
         """What the fitted recordings determine beside the named effects, whatever its cause; None where nothing."""
-        return identify(lasting(self.problem, self.events), self.effects)
+        key = self.problem, self.events, tuple(e.key for e in self.effects)
+        if key not in self.layers:
+            self.layers[key] = identify(lasting(self.problem, self.events), self.effects)
+        return self.layers[key]
 
     @property
     def sensor_noise(self) -> np.ndarray:
