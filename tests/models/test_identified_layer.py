@@ -67,6 +67,20 @@ def test_a_layer_in_the_place_of_the_names_holds_their_torque_and_leaves_the_nam
     assert back.effects == both.effects
 
 
+def test_what_a_layer_has_no_function_of_acts_beside_it_in_memory_and_on_disk(model, tmp_path) -> None:
+    time, q, v, a = motion()
+    spring = NamedEffect("joint_spring", 1, {"k": 4.0, "q0": 0.1})
+    both = replace(
+        model, effects=(*model.effects, spring), instead=model.identified, kept=frozenset({("joint_spring", 1)})
+    )
+    back = lagnet.load_robot(save_corrected(both, tmp_path / "corrected"))
+    plain = CorrectedModel(model.nominal, (spring,), model.slow, identified=model.identified)
+    assert back.acting == both.acting == (spring,)
+    for way in (both, back):
+        got, want = way.torque_along(time, q, v, a), plain.torque_along(time, q, v, a)
+        np.testing.assert_allclose(got, want, rtol=ROUNDING, atol=ROUNDING)
+
+
 def test_identified_bodies_enter_the_rigid_terms(model) -> None:
     _, q, v, _ = motion()
     alone = replace(model, identified=None)

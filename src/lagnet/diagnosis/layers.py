@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.holdout_torque import HoldoutTorque, holdout_errors, holdout_torques
 from lagnet.diagnosis.identified.fit import Identified
-from lagnet.diagnosis.identified.instead import instead_of_names
+from lagnet.diagnosis.identified.instead import instead_of_names, kept_among
 from lagnet.diagnosis.identified.remainder.learn import learn_remainder
 from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.state import DiagnosisState
@@ -43,7 +43,8 @@ def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[
     if beside is not None or remains:
         samples = state.equations.samples / state.selection.scales.inefficiency
         instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside, significant, samples)
-    model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead))
+    kept = frozenset((e.effect, e.joint) for e in kept_among(state.effects) if e.always_acts)
+    model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead), kept=kept)
     found = beside if instead is None else instead
     if found is not None or remains:
         learned = learn_remainder(state.problem, model, state.seed, floor=significant)

@@ -7,7 +7,7 @@ import pytest
 from tests.diagnosis.conftest import Plant
 
 from lagnet.diagnosis.identified.fit import identify
-from lagnet.diagnosis.identified.instead import instead_of_names
+from lagnet.diagnosis.identified.instead import instead_of_names, kept_among
 from lagnet.diagnosis.identified.verdict_entry import INSTEAD, identified_as_json
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -64,6 +64,18 @@ def test_transients_are_kept_and_nothing_stands_in_its_place() -> None:
     problem = posed(arm, Plant(arm))
     there = [NamedEffect("torque_offset", 0, {"b": 5.0}, interval=(1.0, 2.0))]
     assert instead_of_names(problem, there, None) is None
+
+
+def test_a_spring_acts_on_beside_a_layer_in_the_place_of_gains() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    real = arm.with_inertial_parameters(arm.inertial_parameters() * HEAVIER[:, None])
+    spring = NamedEffect("joint_spring", 1, {"k": 6.0, "q0": 0.2})
+    problem = posed(arm, Plant(real, [lambda q, v, a, load: 6.0 * (q - 0.2) * (np.arange(3) == 1)]))
+    names = [*(NamedEffect("torque_gain", j, {"g": g}) for j, g in enumerate(HEAVIER)), spring]
+    assert kept_among(names) == (spring,)
+    found = instead_of_names(problem, names, identify(problem, names))
+    assert found is not None
+    assert found.choice.nmse[1] < 0.1 * identify(problem, ()).choice.nmse[1]
 
 
 def test_a_layer_in_the_place_of_the_names_says_so() -> None:

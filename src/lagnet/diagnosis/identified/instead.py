@@ -16,8 +16,10 @@ from lagnet.diagnosis.identified.evidence import joint_equations
 from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.named_effects import NamedEffect, torque_with, transients_among
+from lagnet.effects.effect import Effect
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
+REPLACED = ("rotor_inertia", "torque_offset", "torque_gain", "coupled_transmission")  # beside friction and bodies
 TIE = 1e-3  # mean over joints of ln(error in place of the names / error beside them): within it names stay
 
 
@@ -28,7 +30,7 @@ def instead_of_names(
     floor: np.ndarray | float = 0.0,
     samples: np.ndarray | float = np.inf,
 ) -> Identified | None:
-    """The layer without the effects that always act, where it predicts unseen blocks better than with them; else None.
+    """The layer in the place of effects that it has functions of, where it predicts unseen blocks better; else None.
 
     Args:
         problem: the diagnosis' problem.
@@ -37,7 +39,7 @@ def instead_of_names(
         floor: shape (dof,), error with the names up to which nothing is left to explain [N m].
         samples: shape (dof,), independent samples of each joint that the names' parameters were fitted to.
     """
-    rest = transients_among(effects)
+    rest = kept_among(effects)
     with_names = _error_of(problem, effects) if beside is None else _block_error(beside)
     if len(rest) == len(effects) or np.all(with_names <= np.square(floor)):
         return None
@@ -47,6 +49,15 @@ def instead_of_names(
     unseen = with_names * _optimism([e for e in effects if e not in rest], samples, problem.n_dof)
     ratio = np.maximum(_block_error(alone), 1e-300) / np.maximum(unseen, 1e-300)
     return alone if np.mean(np.log(ratio)) < -TIE else None
+
+
+def kept_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
+    """Those that no layer can stand for: what acts for a while, and laws of which it has no function."""
+    return tuple(e for e in effects if not (e.always_acts and _has_function(effect_named(e.effect))))
+
+
+def _has_function(law: Effect) -> bool:
+    return law.is_friction or law.is_body or law.name in REPLACED
 
 
 def _optimism(effects: Sequence[NamedEffect], samples: np.ndarray | float, n_dof: int) -> np.ndarray:

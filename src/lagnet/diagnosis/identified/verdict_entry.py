@@ -45,8 +45,9 @@ def identified_as_json(
 
 
 INSTEAD = (
-    "Unseen motion is predicted better where the values of the named effects are not held fixed: in the identified "
-    "layer and the full correction this layer stands in their place. The names stay claims, judged by themselves."
+    "Unseen motion is predicted better where the values of named friction, rotors, offsets, gains and links are not "
+    "held fixed: in the identified layer and the full correction this layer stands in their place. The names stay "
+    "claims, judged by themselves."
 )
 BESIDE = " beside the named physics"
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."

@@ -22,7 +22,7 @@ from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 3  # 2: with the identified layer; 3: with a learned remainder in parts
+FORMAT = 4  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200
@@ -48,6 +48,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
             | ({} if e.recording is None else {"recording": e.recording})
+            | ({"kept": True} if (e.effect, e.joint) in model.kept else {})
             for e in model.effects
         ],
         "identified": layer_as_json(model.identified),
@@ -113,6 +114,7 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
         effects = tuple(_effect(e, len(text["joints"])) for e in text["effects"])
         slow = np.array([float(s) for s in text["slow"]])
         joints = tuple(map(str, text["joints"]))
+        kept = frozenset((e.effect, e.joint) for e, t in zip(effects, text["effects"], strict=True) if t.get("kept"))
         identified, instead = (layer_from_json(text.get(k), len(joints)) for k in ("identified", "instead"))
         remainder = remainder_from_json(text.get("remainder"), len(joints)) if layers == "full" else None
         held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
@@ -129,7 +131,7 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
     straight = None if straight is None else straight.astype(bool)
     of_file = (str(folder), _checksum(where))
     model = CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left, identified=identified)
-    model = replace(model, instead=instead, remainder=remainder)
+    model = replace(model, instead=instead, kept=kept, remainder=remainder)
     return model.with_layers(layers)
 
 

@@ -14,7 +14,7 @@ from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError, ModelError
 from lagnet.models.corrected.changed_bodies import CHANGES_OF_BODIES, apply_to_bodies
 from lagnet.models.corrected.identified import IdentifiedLayer
-from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with, transients_among
+from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 from lagnet.models.corrected.remainder.learned import LearnedRemainder
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.types import (
@@ -63,6 +63,7 @@ class CorrectedModel:
         identified: Y Δπ and Σ_i w_i f_i, which the recordings determine whatever their cause; None: nothing.
         instead: such a layer in the place of the effects that always act and of `identified`, where it predicts unseen
             motion better than both: torques are then of it, and the effects are claims alone. None: there is none.
+        kept: (effect, joint) of those that act beside `instead` nevertheless, since it has no function of their law.
         remainder: ε, learned from the residual; None: nothing.
     """
 
@@ -77,6 +78,7 @@ class CorrectedModel:
     left: JointVector | None = None
     identified: IdentifiedLayer | None = None
     instead: IdentifiedLayer | None = None
+    kept: frozenset[tuple[str, int | None]] = frozenset()
     remainder: LearnedRemainder | None = None
     kind: str = field(default="corrected", init=False)
 
@@ -95,7 +97,9 @@ class CorrectedModel:
     @property
     def acting(self) -> tuple[NamedEffect, ...]:
         """The named effects that torques are of: all but those in whose place a layer stands."""
-        return self.effects if self.instead is None else transients_among(self.effects)
+        if self.instead is None:
+            return self.effects
+        return tuple(e for e in self.effects if not e.always_acts or (e.effect, e.joint) in self.kept)
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -39,6 +39,11 @@ class NamedEffect:
     modelled: float = 0.0
 
     @property
+    def always_acts(self) -> bool:
+        """Whether it is there at all times and in all recordings."""
+        return self.interval is None and self.recording is None
+
+    @property
     def key(self) -> tuple:
         """Effect, joint, parameters, interval and recording as a value to be looked up by."""
         return self.effect, self.joint, tuple(self.values.items()), self.interval, self.recording
@@ -88,11 +93,6 @@ class NamedEffect:
         else:
             found = {j: torque[:, j] for j in range(motion.n_dof) if torque[:, j].any()}
         return found if self.interval is None else {j: x * share for j, x in found.items()}
-
-
-def transients_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
-    """Those that act for a while, or in one recording, alone."""
-    return tuple(e for e in effects if e.interval is not None or e.recording is not None)
 
 
 def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
