@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -163,7 +162,7 @@ def test_without_an_event_nothing_acts_for_a_while(plant, arm, at) -> None:
 def test_what_is_shorter_than_a_period_of_the_low_pass_has_no_name(length, resolved) -> None:
     values = dict.fromkeys(("Fx", "Fy", "Fz", "px", "py", "pz"), 1.0)
     push = NamedEffect("contact_force", None, values, (5.0, 5.0 + length))
-    assert is_resolved(SimpleNamespace(effect=push), bandwidth=6.9) is resolved
+    assert is_resolved(push, bandwidth=6.9) is resolved
 
 
 def test_an_interval_belongs_to_one_recording(arm) -> None:

@@ -46,7 +46,7 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
         scan: the intervals.
     """
     pairs = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
-    good = [(s, f) for s, f in pairs if _convinces(f) and is_resolved(f, problem.bandwidth)]
+    good = [(s, f) for s, f in pairs if _convinces(f)]
     bursts = _bursts(pairs)
     others = (s for s in scan.events if not any(s is t for t in (*bursts, *(t for t, _ in good))))
     unnamed = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
@@ -55,7 +55,7 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
     found = []
     for effect, intervals, (event, fit) in zip(together.effects[n:], together.intervals[n:], good, strict=True):
         wide = _widened(intervals, _caution(fit, scan.inflation), problem.rate)
-        if effect_named(effect.effect).is_determined(wide):
+        if effect_named(effect.effect).is_determined(wide) and is_resolved(effect, problem.bandwidth):
             found.append(Transient(effect, wide, fit, 0.0))
         elif event.gain > UNNAMED:
             unnamed = (*unnamed, event)
@@ -75,9 +75,9 @@ def _convinces(fit: EventFit) -> bool:
     )
 
 
-def is_resolved(fit: EventFit, bandwidth: float) -> bool:
-    """Whether the event is longer than a period of the low-pass: a shorter one may be an outlier as well as a push."""
-    start, end = fit.effect.interval or (-np.inf, np.inf)
+def is_resolved(effect: NamedEffect, bandwidth: float) -> bool:
+    """Whether an event is longer than a period of the low-pass: a shorter one may be an outlier as well as a push."""
+    start, end = effect.interval or (-np.inf, np.inf)
     return end - start >= RESOLVED / bandwidth
 
 
