@@ -56,7 +56,10 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     if free is None:
         return first
     second = again(free)
-    better = not is_puzzled(against_given(second)) if puzzled else _log_error(second) < _log_error(first) - BETTER
+    if puzzled:
+        better = not is_puzzled(against_given(second))
+    else:
+        better = names_as_many(second, first) and _log_error(second) < _log_error(first) - BETTER
     return replace(second, rejected=(*first.rejected, *second.rejected)) if better else first  # why no body stays told
 
 
@@ -74,6 +77,11 @@ def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> D
     errors = [_error(one, tried[-1], events) for one in tried]
     best = int(np.argmin(errors))
     return tried[best] if errors[best] < errors[0] - BETTER else first
+
+
+def names_as_many(second: DiagnosisState, first: DiagnosisState) -> bool:
+    """Whether another run has at least as many names: what one joint gains is no reason to forget others."""
+    return len(second.effects) >= len(first.effects)
 
 
 def is_puzzled(state: DiagnosisState) -> bool:
