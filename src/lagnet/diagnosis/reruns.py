@@ -64,7 +64,7 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
-    """The first run, or the one in a narrower band that predicts held-out torque much better below that band.
+    """The first run, or the one in a narrower band that predicts torque below it much better, with as many names.
 
     Args:
         at: a run on the same recordings at a given bandwidth [Hz].
@@ -76,7 +76,7 @@ def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> D
     events = [s for one in tried for s in one.events]
     errors = [_error(one, tried[-1], events) for one in tried]
     best = int(np.argmin(errors))
-    return tried[best] if errors[best] < errors[0] - BETTER else first
+    return tried[best] if errors[best] < errors[0] - BETTER and names_as_many(tried[best], first) else first
 
 
 def names_as_many(second: DiagnosisState, first: DiagnosisState) -> bool:
