@@ -61,3 +61,24 @@ def test_one_joint_has_neither_median_nor_worst(one_slide) -> None:
 
 def test_a_layer_that_makes_the_median_worse_does_not_let_it_fall(one_slide) -> None:
     assert "changes from 1.0 % to 2.0 %" in error_falls(findings_of(one_slide, nmse_nominal=[0.01], nmse_named=[0.02]))
+
+
+def test_what_an_arm_has_less_of_than_its_model_is_not_told_as_left_out(six) -> None:
+    findings = findings_of(six)
+    joints = findings.joints[:2]
+    signs = {("coulomb_friction", joints[0]): -0.2, ("coulomb_friction", joints[1]): 0.3}
+    findings.verdict["effects"] = [
+        {
+            "effect": effect,
+            "joint": joint,
+            "tied_with": [],
+            "explanation": "",
+            "parameters": [{"name": "Fc", "value": value, "unit": "N m", "ci95": [value - 0.01, value + 0.01]}],
+        }
+        for (effect, joint), value in signs.items()
+    ]
+    sentences = headline._left_out(findings)
+    assert [s.split(":")[0] for s in sentences] == ["Left out", "Less than modelled"]
+    assert joints[1] in sentences[0]
+    assert joints[0] in sentences[1]
+    assert [cause["less"] for cause in headline._causes(findings)] == [True, False]

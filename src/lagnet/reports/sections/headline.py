@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lagnet.effects.catalogue import CATALOGUE
 from lagnet.reports.contents.findings import Findings, place
 from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.page import Section, section
@@ -44,7 +45,7 @@ def _sentences(findings: Findings) -> list[str]:
     if not findings.effects:
         sentences += ["No physics of the catalogue explains the difference beyond doubt.", *_unjudged(findings)]
     else:
-        sentences.append(_left_out(findings))
+        sentences += _left_out(findings)
     return [*sentences, *filter(None, [error_falls(findings)])]
 
 
@@ -54,20 +55,34 @@ def _unjudged(findings: Findings) -> list[str]:
     return [f"These recordings cannot judge {listed(list(names))}."] if names else []
 
 
-def _left_out(findings: Findings) -> str:
+def _left_out(findings: Findings) -> list[str]:
+    """What the model lacks, and what the arm has less of."""
+    more, less = ([e for e in findings.effects if is_less(e) == asked] for asked in (False, True))
+    told = (("Left out", more), ("Less than modelled", less))
+    return [f"{lead}: {_gathered(findings, effects)}." for lead, effects in told if effects]
+
+
+def is_less(effect: dict[str, Any]) -> bool:
+    """Whether the arm has less of a law than its nominal model: a parameter below the least that a law has."""
+    law = CATALOGUE.get(effect["effect"])
+    least = {p.name: p.lower for p in law.parameters} if law else {}
+    return any(p["value"] < least[p["name"]] for p in effect["parameters"] if p["name"] in least)
+
+
+def _gathered(findings: Findings, effects: list[dict[str, Any]]) -> str:
     """Effects with their values if there are few, else gathered by the joints they share."""
-    if len(findings.effects) <= 3:
-        parts = [
-            f"{effect_words(e['effect'])} on {place(e['joint'])} ({', '.join(_values(e))}{_ties([e], ', ')})"
-            for e in findings.effects
-        ]
-        return f"Left out: {listed(parts)}."
+    if len(effects) <= 3:
+        return listed(
+            [
+                f"{effect_words(e['effect'])} on {place(e['joint'])} ({', '.join(_values(e))}{_ties([e], ', ')})"
+                for e in effects
+            ]
+        )
     by_places: dict[tuple[str | None, ...], list[str]] = {}
-    for name, effects in _by_name(findings).items():
-        places = tuple(effect["joint"] for effect in effects)
-        by_places.setdefault(places, []).append(effect_words(name) + (f" ({_ties(effects)})" if _ties(effects) else ""))
-    parts = [f"{listed(words)} on {_on(places, findings)}" for places, words in by_places.items()]
-    return f"Left out: {'; '.join(parts)}."
+    for (name, _), group in _by_name(findings, effects).items():
+        places = tuple(effect["joint"] for effect in group)
+        by_places.setdefault(places, []).append(effect_words(name) + (f" ({_ties(group)})" if _ties(group) else ""))
+    return "; ".join(f"{listed(words)} on {_on(places, findings)}" for places, words in by_places.items())
 
 
 def _ties(effects: list[dict[str, Any]], before: str = "") -> str:
@@ -118,18 +133,18 @@ def _gain(findings: Findings) -> list[dict[str, str]]:
 
 def _causes(findings: Findings) -> list[dict[str, Any]]:
     causes = []
-    for name, effects in _by_name(findings).items():
+    for (name, less), effects in _by_name(findings, findings.effects).items():
         entries = [{"place": place(e["joint"]), "values": _values(e), "tied_with": e["tied_with"]} for e in effects]
         advice = [effect["explanation"] for effect in effects if effect["joint"] is None]
-        causes.append({"name": name, "entries": entries, "advice": advice})
+        causes.append({"name": name, "less": less, "entries": entries, "advice": advice})
     return causes
 
 
-def _by_name(findings: Findings) -> dict[str, list[dict[str, Any]]]:
-    """Effects of one kind together, the strongest kind first, each in the order of the joints."""
-    groups: dict[str, list[dict[str, Any]]] = {}
-    for effect in findings.effects:
-        groups.setdefault(effect["effect"], []).append(effect)
+def _by_name(findings: Findings, effects: list[dict[str, Any]]) -> dict[tuple[str, bool], list[dict[str, Any]]]:
+    """Effects of one kind and sign together, the strongest kind first, each in the order of the joints."""
+    groups: dict[tuple[str, bool], list[dict[str, Any]]] = {}
+    for effect in effects:
+        groups.setdefault((effect["effect"], is_less(effect)), []).append(effect)
     order = {joint: index for index, joint in enumerate(findings.joints)}
     return {name: sorted(group, key=lambda e: order.get(e["joint"], -1)) for name, group in groups.items()}
 
