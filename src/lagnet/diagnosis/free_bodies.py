@@ -74,10 +74,10 @@ def take_the_place_of_gains(beside: DiagnosisState, candidate: Candidate) -> boo
     if are_scaled_everywhere(candidate):
         return True
     gains = remainder_of(candidate.problem, candidate.effects)
-    return _log_error(gains, candidate.noise) - _log_error(beside.after, candidate.noise) > BETTER
+    return log_error(gains, candidate.noise) - log_error(beside.after, candidate.noise) > BETTER
 
 
-def _log_error(left: Remainder, noise: np.ndarray) -> float:
+def log_error(left: Remainder, noise: np.ndarray) -> float:
     """Σ_j ln max(mean r_j², σ_j²) on held-out motion."""
     power = [power_of(*left.holdout, joint) for joint in range(len(noise))]
     return float(np.sum(np.log(np.maximum(power, np.maximum(noise, 1e-12) ** 2))))

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lagnet.diagnosis.free_bodies import BETTER, against_given, beside_free_bodies, explains, with_nominal
+from lagnet.diagnosis.free_bodies import BETTER, against_given, beside_free_bodies, explains, log_error, with_nominal
 from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
@@ -59,7 +59,8 @@ def beside_links(first: DiagnosisState, again: Callable[[Problem], DiagnosisStat
     if puzzled:
         better = not is_puzzled(against_given(second))
     else:
-        better = names_as_many(second, first) and _log_error(second) < _log_error(first) - BETTER
+        before, after = (log_error(one.after, one.noise) for one in (first, second))
+        better = names_as_many(second, first) and after < before - BETTER
     return replace(second, rejected=(*first.rejected, *second.rejected)) if better else first  # why no body stays told
 
 
@@ -124,12 +125,6 @@ def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[D
         except DiagnosisError:  # recordings too short for so slow a filter
             break
     return out
-
-
-def _log_error(state: DiagnosisState) -> float:
-    """Σ_j ln max(mean r_j², σ_j²) on held-out samples."""
-    power = [joint.power for joint in state.sizes]
-    return float(np.sum(np.log(np.maximum(power, np.maximum(state.noise, 1e-12) ** 2))))
 
 
 def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventInterval]) -> float:

@@ -149,6 +149,10 @@ class Effect(ABC):
         """Whether the parameters obey physics (bounds; pseudo-inertias positive definite where there are any)."""
         return all(p.lower <= values[p.name] <= p.upper for p in self.parameters)
 
+    def is_less(self, values: Mapping[str, float]) -> bool:
+        """Whether some parameter is below the least that the law has: a model holds more of it than the arm."""
+        return any(values[p.name] < p.lower for p in self.parameters if p.name in values)
+
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
         """Whether fitted coefficients, noise and all, could be those of real physics; looser than `feasible`."""
         lower, upper = self.bounds(shape)

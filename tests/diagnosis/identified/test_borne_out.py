@@ -7,9 +7,10 @@ import pytest
 from tests.diagnosis.conftest import Plant
 from tests.diagnosis.identified.test_identify import posed, wrong_bodies
 
-from lagnet.diagnosis.identified.borne_out import COUNTERPARTS, is_borne_out, powers_beside
+from lagnet.diagnosis.identified.borne_out import is_borne_out, powers_beside
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.modelled import COUNTERPARTS
 from lagnet.models.corrected.motion_terms import KINDS
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.random_arm import random_arm

@@ -16,17 +16,9 @@ from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.modelled import COUNTERPARTS
 from lagnet.models.corrected.named_effects import NamedEffect
 
-COUNTERPARTS = {
-    "viscous_friction": ("Fv", "viscous"),
-    "coulomb_friction": ("Fc", "dry"),
-    "presliding_hysteresis": ("Fc", "dry"),
-    "load_dependent_friction": ("K", "load"),
-    "rotor_inertia": ("Ia", "rotor"),
-    "torque_offset": ("b", "offset"),
-}
-"""By effect, its parameter that is the weight of a function of the layer, and the kind of that function."""
 ALIKE = 0.5  # of an effect's value, within which the weight may differ from it
 
 
@@ -48,10 +40,7 @@ def is_borne_out(found: Identified, effect: NamedEffect) -> bool:
 
 def _weight(found: Identified, kind: str, joint: int) -> tuple[float, float]:
     """Weight of the function of a kind at a joint, and half of its 95 % interval; 0 where the layer has none."""
-    for term, weight in zip(found.layer.terms, found.layer.weights, strict=True):
-        if (term.kind, term.joint, term.other) == (kind, joint, None):
-            return float(weight), found.half_width(term)
-    return 0.0, 0.0
+    return next(((w, found.half_width(term)) for term, w in found.layer.of_kind(kind, joint)), (0.0, 0.0))
 
 
 def powers_beside(

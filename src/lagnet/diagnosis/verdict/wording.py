@@ -32,9 +32,10 @@ def explain(
     """One or two sentences: effect, joint, parameters, held-out error with and without it, and ties."""
     where = f"at {joint}" if joint else "on the whole arm"
     shown = values(parameters)
-    remark = law.remark({p.name: p.value for p in parameters})
+    found = {p.name: p.value for p in parameters}
+    remark = law.remark(found)
     shown += f" ({remark})" if remark else ""
-    title = f"{law.title}, less than modelled," if is_less(law, parameters) else law.title
+    title = f"{law.title}, less than modelled," if law.is_less(found) else law.title
     first = f"{title} {where}, {law.formula} with {shown}: without it the held-out error is "
     first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
     first += f"{percent(evidence.holdout_nmse_with)}."
@@ -43,12 +44,6 @@ def explain(
         advised = (word for t in tied for word in recording_against([law.name], [t]).split("; "))
         first += f"What would: {'; '.join(dict.fromkeys(advised))}."
     return first
-
-
-def is_less(law: Effect, parameters: Sequence[NamedParameter]) -> bool:
-    """Whether the arm has less of a law than its nominal model: a parameter below zero that is none by itself."""
-    least = {p.name: p.lower for p in law.parameters}
-    return any(p.value < least[p.name] for p in parameters if p.name in least)
 
 
 def values(parameters: Sequence[NamedParameter]) -> str:

@@ -60,10 +60,10 @@ class IdentifiedLayer:
                 out[:, row] += weight * term.at(row, motion, load, rest)
         return out
 
-    def weights_of(self, kind: str, joint: int) -> list[float]:
-        """Weights of the functions of a kind at one joint."""
+    def of_kind(self, kind: str, joint: int) -> list[tuple[MotionTerm, float]]:
+        """The functions of a kind at one joint with their weights."""
         pairs = zip(self.terms, self.weights, strict=True)
-        return [float(w) for t, w in pairs if (t.kind, t.joint, t.other) == (kind, joint, None)]
+        return [(t, float(w)) for t, w in pairs if (t.kind, t.joint, t.other) == (kind, joint, None)]
 
     def joint_inertia(self, n_dof: int) -> np.ndarray:
         """What rotors and ties add to the mass matrix, shape (dof, dof) [kg m²]."""

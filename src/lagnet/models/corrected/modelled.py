@@ -19,13 +19,15 @@ WEIGHTS: dict[str, tuple[tuple[str, str], ...]] = {
     "rotor_inertia": (("rotor_inertia", "Ia"),),
 }
 """By law that is a weight of one function: the laws, and their parameters, that hold such a weight."""
-TERMS = {
-    "viscous_friction": "viscous",
-    "coulomb_friction": "dry",
-    "load_dependent_friction": "load",
-    "rotor_inertia": "rotor",
+COUNTERPARTS = {
+    "viscous_friction": ("Fv", "viscous"),
+    "coulomb_friction": ("Fc", "dry"),
+    "presliding_hysteresis": ("Fc", "dry"),
+    "load_dependent_friction": ("K", "load"),
+    "rotor_inertia": ("Ia", "rotor"),
+    "torque_offset": ("b", "offset"),
 }
-"""By law the kind of function of the identified layer that is the same."""
+"""By effect, its parameter that is the weight of a function of the identified layer, and the kind of that function."""
 
 
 def modelled_weight(nominal: Any, effect: str, joint: int | None) -> float:
@@ -42,12 +44,13 @@ def modelled_weight(nominal: Any, effect: str, joint: int | None) -> float:
 
 
 def _weights(nominal: Any, effect: str, joint: int) -> Iterator[float]:
+    _, kind = COUNTERPARTS.get(effect, ("", ""))
     while isinstance(nominal, CorrectedModel):
         for name, parameter in WEIGHTS[effect]:
             same = (e for e in nominal.acting if (e.effect, e.joint) == (name, joint))
             yield from (e.values[parameter] for e in same if e.interval is None and e.recording is None)
         if nominal.layer is not None:
-            yield from nominal.layer.weights_of(TERMS.get(effect, ""), joint)
+            yield from (weight for _, weight in nominal.layer.of_kind(kind, joint))
         nominal = nominal.nominal
     armature = getattr(nominal, "armature", None)
     if effect == "rotor_inertia" and armature is not None:

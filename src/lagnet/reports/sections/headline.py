@@ -63,10 +63,9 @@ def _left_out(findings: Findings) -> list[str]:
 
 
 def is_less(effect: dict[str, Any]) -> bool:
-    """Whether the arm has less of a law than its nominal model: a parameter below the least that a law has."""
+    """Whether the arm has less of a law than its nominal model."""
     law = CATALOGUE.get(effect["effect"])
-    least = {p.name: p.lower for p in law.parameters} if law else {}
-    return any(p["value"] < least[p["name"]] for p in effect["parameters"] if p["name"] in least)
+    return law is not None and law.is_less({p["name"]: p["value"] for p in effect["parameters"]})
 
 
 def _gathered(findings: Findings, effects: list[dict[str, Any]]) -> str:
