@@ -14,7 +14,6 @@ explains another joint stays.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar, final
 
@@ -25,7 +24,7 @@ from lagnet.diagnosis.nominal.learned_error import Name, may_be_its_error, was_l
 from lagnet.diagnosis.rules.candidate import Candidate, Part
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
-from lagnet.diagnosis.unexplained.predictability import predictability_of, signals_of
+from lagnet.diagnosis.unexplained.predictability import is_predictable, signals_of
 from lagnet.diagnosis.unexplained.remainder import every_second_part
 from lagnet.percent import percent
 
@@ -86,10 +85,14 @@ class LackOfFit(RejectionRule):
         needed = {j: s for j, s in both.items() if s > self.little}
         if was_learned(candidate.problem.nominal):  # the error of a network is a function of the arm's state, too
             return needed
-        predictable = self._predictable(candidate, {j: s for j, s in held.items() if s > self.little})
+        undecided = _undecided(candidate, needed | self._of_physics(held))
+        predictable = self._predictable(candidate, {j: held[j] for j in undecided if held.get(j, 0.0) > self.little})
         disturbance = {j: self.disturbed * s for j, s in needed.items() if j not in predictable}
-        physics = {j: self.stands * s for j, s in predictable.items() if s > self.much}
-        return needed | disturbance | physics
+        return needed | disturbance | self._of_physics(predictable)
+
+    def _of_physics(self, predictable: Shares) -> Shares:
+        """By joint, what is asked beside a predictable residual that is too large for the shape of a named law."""
+        return {j: self.stands * s for j, s in predictable.items() if s > self.much}
 
     def _is_borne_out(self, candidate: Candidate, index: int, share: float, joint: int) -> bool:
         """Whether the identified layer bears an effect out, and leaves half of the share that it explains or less."""
@@ -159,7 +162,14 @@ class LackOfFit(RejectionRule):
 
     def _predictable(self, candidate: Candidate, shares: Shares) -> Shares:
         """Those of the joints whose residual is predictable from the state, held out or between parts of the fit."""
-        return {j: s for j, s in shares.items() if any(x > self.predictable for x in _predicted(candidate, j))}
+        return {j: s for j, s in shares.items() if _is_predictable(candidate, j, self.predictable)}
+
+
+def _undecided(candidate: Candidate, most: Shares) -> set[int]:
+    """Joints of the effects that explain less than the most that may be asked of them, at each of their joints."""
+    parts = (candidate.holdout_gain[i] for i in candidate.indices)
+    short = (p for p in parts if all(p.shares[j] < most.get(j, 0.0) for j in p.at_joints))
+    return {int(j) for part in short for j in part.at_joints}
 
 
 def outshines(part: HoldoutGain, stands: float, *remainders: Shares) -> bool:
@@ -186,15 +196,16 @@ def _too_little(joint: str, share: float, least: float) -> str:
     return f"{explains}, beside too much that motion predicts and no effect explains"
 
 
-def _predicted(candidate: Candidate, joint: int) -> Iterator[float]:
-    """Predictable shares of a joint's residual: held out, and in every second part of the fit."""
+def _is_predictable(candidate: Candidate, joint: int, least: float) -> bool:
+    """Whether a share of a joint's residual can be predicted: held out, or in every second part of the fit."""
     problem, seed = candidate.problem, candidate.seed
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     residual, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
-    valid = np.concatenate([p.counts for p in problem.fit])[:, joint]
-    yield predictability_of(seen, residual, valid, fresh, test, seed).share
-    one, other = every_second_part(len(valid))
-    yield predictability_of(seen.only(one), residual[one], valid[one], seen.only(other), residual[other], seed).share
+    counts = np.concatenate([p.counts for p in problem.fit])[:, joint]
+    if is_predictable(seen, residual, counts, fresh, test, seed, least):
+        return True
+    one, other = every_second_part(len(counts))
+    return is_predictable(seen.only(one), residual[one], counts[one], seen.only(other), residual[other], seed, least)
 
 
 def _power(x: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sklearn.ensemble import HistGradientBoostingRegressor
 
 MOST = 4_000  # training samples
+FEWEST = 50  # of them, below which nothing is told
 HISTORY = 0.5  # how far back the short history looks, in periods of the bandwidth
 STRONGEST = 4  # signals that are reported
 LEAST_EFFECT = 0.05  # of the residual power, below which a signal is not reported as predicting it
@@ -79,19 +80,13 @@ def predictability_of(
         residual, unseen_residual: shape (n,), (m,), one joint [N m].
         counts: shape (n,), samples of the fit that count.
     """
-    from sklearn.ensemble import HistGradientBoostingRegressor  # slow to import, and used where something is left
-
     rng = np.random.default_rng(seed)
-    rows = np.flatnonzero(counts)
-    rows = np.sort(rng.permutation(rows)[:MOST])
+    rows = _rows(counts, rng)
     power = float(np.mean(unseen_residual**2))
-    if rows.size < 50 or not power > 0:
+    if rows.size < FEWEST or not power > 0:
         return Predictability(0.0, ())
-    trees = HistGradientBoostingRegressor(
-        max_iter=60, max_leaf_nodes=12, learning_rate=0.12, min_samples_leaf=20, random_state=seed
-    )
     with threadpool_limits(1):
-        trees.fit(signals.table[rows], residual[rows])
+        trees = _trees(signals.table[rows], residual[rows], seed)
         error = _error(trees, unseen.table, unseen_residual)
         share = float(np.clip(1.0 - error / power, 0.0, 1.0))
         named = _strongest(trees, unseen, unseen_residual, error, power, rng) if share > LEAST_EFFECT else ()
@@ -99,6 +94,41 @@ def predictability_of(
     return (
         Predictability(plain, terms[:STRONGEST]) if plain > max(share, LEAST_EFFECT) else Predictability(share, named)
     )
+
+
+def is_predictable(
+    signals: Signals,
+    residual: np.ndarray,
+    counts: np.ndarray,
+    unseen: Signals,
+    unseen_residual: np.ndarray,
+    seed: int,
+    least: float,
+) -> bool:
+    """Whether `predictability_of` tells a share above the least one, found with as little work as that takes."""
+    rows = _rows(counts, np.random.default_rng(seed))
+    power = float(np.mean(unseen_residual**2))
+    if rows.size < FEWEST or not power > 0:
+        return False
+    x, y = signals.table[rows], residual[rows]
+    if sparse_share(signals.names, x, y, unseen.table, unseen_residual)[0] > least:
+        return True
+    with threadpool_limits(1):
+        return _error(_trees(x, y, seed), unseen.table, unseen_residual) < (1.0 - least) * power
+
+
+def _rows(counts: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Samples that trees are grown on, at random among those that count."""
+    return np.sort(rng.permutation(np.flatnonzero(counts))[:MOST])
+
+
+def _trees(table: np.ndarray, residual: np.ndarray, seed: int) -> HistGradientBoostingRegressor:
+    from sklearn.ensemble import HistGradientBoostingRegressor  # slow to import, and used where something is left
+
+    trees = HistGradientBoostingRegressor(
+        max_iter=60, max_leaf_nodes=12, learning_rate=0.12, min_samples_leaf=20, random_state=seed
+    )
+    return trees.fit(table, residual)
 
 
 def _error(trees: HistGradientBoostingRegressor, table: np.ndarray, truth: np.ndarray) -> float:
