@@ -13,7 +13,7 @@ from lagnet.errors import ModelError
 from lagnet.models.corrected.folder import FILE, save_corrected
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
-from lagnet.models.corrected.motion_terms import KINDS, MotionTerm, Rest
+from lagnet.models.corrected.motion_terms import KINDS, MotionTerm, Rest, is_over_position
 from lagnet.rigid_body.random_arm import random_arm
 
 N = 3
@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 def model():
     arm = random_arm(N, seed=5, kinds=("revolute",))
     pairs = {kind for kind in KINDS if kind.startswith("cross")}
-    terms = tuple(MotionTerm(k, 1, 0.3, 2 if k in pairs else None) for k in KINDS)
+    terms = tuple(MotionTerm(k, 1, 0.3, 2 if k in pairs else None, 0.2 if is_over_position(k) else 0.0) for k in KINDS)
     weights = np.linspace(0.1, 0.4, len(terms))
     rest = Rest(np.full(N, 0.01), np.array([1.0, 0.5, 0.0]))
     layer = IdentifiedLayer(0.05 * arm.inertial_parameters(), terms, weights, rest)

@@ -1,7 +1,8 @@
 """w ± σ of φ(q, v, a) beside all links and all other functions: named effects that the identified layer bears out.
 
 Friction, rotors and offsets are functions of the layer, too, estimated there together with whatever else the recordings
-determine. An effect whose function keeps its weight in such company does not stand for a part of something else.
+determine. An effect whose function keeps its weight in such company does not stand for a part of something else. One
+that changes along the range of its joint by more than half of its mean is not the law of that name.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.modelled import COUNTERPARTS
+from lagnet.models.corrected.motion_terms import is_friction_over_position, is_over_position
 from lagnet.models.corrected.named_effects import NamedEffect
 
 ALIKE = 0.5  # of an effect's value, within which the weight may differ from it
+VARIES = 0.5  # of the torque of a function, beyond which its change along the range of the joint is another law
 
 
 def is_borne_out(found: Identified, effect: NamedEffect) -> bool:
@@ -35,7 +38,29 @@ def is_borne_out(found: Identified, effect: NamedEffect) -> bool:
     value = effect.values[parameter]
     dry, dry_half = _weight(found, "dry", effect.joint)
     pushes = dry < -dry_half and not effect.modelled
-    return abs(weight) > half and abs(weight - value) <= ALIKE * abs(value) and not pushes
+    alike = abs(weight) > half and abs(weight - value) <= ALIKE * abs(value)
+    return alike and not pushes and not _changes_along_the_range(found, kind, effect.joint)
+
+
+def _changes_along_the_range(found: Identified, kind: str, joint: int) -> bool:
+    """Whether friction, or a torque of position, that the layer has over the range exceeds half of a function's."""
+    friction = kind != "offset"
+    own = [t.kind for t in found.layer.terms if t.joint == joint and is_over_position(t.kind)]
+    waves = tuple(k for k in own if is_friction_over_position(k) == friction)
+    return bool(waves) and _usual_torque(found, waves, joint) > VARIES * _usual_torque(found, (kind,), joint)
+
+
+def _usual_torque(found: Identified, kinds: tuple[str, ...], joint: int) -> float:
+    """Root mean square of what functions of some kinds add at their joint on fitted motion [N m]."""
+    design, rows = found.design, found.design.joints[joint]
+    own = [
+        design.n_bodies + i
+        for i, t in enumerate(design.terms)
+        if (t.joint, t.other) == (joint, None) and t.kind in kinds
+    ]
+    at = np.flatnonzero(np.isin(rows.unknowns, own))
+    torque = rows.columns[rows.valid][:, at] @ found.choice.ridge.x[rows.unknowns[at]]
+    return float(np.sqrt(np.mean(torque**2))) if torque.size else 0.0
 
 
 def _weight(found: Identified, kind: str, joint: int) -> tuple[float, float]:

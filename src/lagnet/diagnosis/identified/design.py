@@ -28,6 +28,7 @@ class Group:
         free: whether they have no prior.
         joint: the joint whose functions they weight; None for bodies and pairs.
         pair: the two joints that they couple; None for all others.
+        optional: whether they are used only where held-out motion is predicted better with them.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Group:
     free: bool
     joint: int | None = None
     pair: tuple[int, int] | None = None
+    optional: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +136,8 @@ def _groups(groups: Sequence[TermGroup], n_bodies: int) -> tuple[Group, ...]:
     out = [Group("bodies", np.arange(n_bodies), False)] if n_bodies else []
     start = n_bodies
     for group in groups:
-        out.append(Group(group.name, np.arange(start, start + len(group.terms)), group.free, group.joint, group.pair))
+        unknowns = np.arange(start, start + len(group.terms))
+        out.append(Group(group.name, unknowns, group.free, group.joint, group.pair, group.optional))
         start += len(group.terms)
     return tuple(out)
 

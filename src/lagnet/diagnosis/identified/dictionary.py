@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.models.corrected.motion_terms import BENDS, MotionTerm
+from lagnet.models.corrected.motion_terms import BENDS, PATH_WAVES, POSITION_WAVES, MotionTerm
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
+COARSE = 4  # half waves over the range of a joint; shorter ones have a prior of their own
 USUAL = 0.98  # quantile of |v| taken for the usual largest speed
 
 
@@ -25,7 +26,8 @@ class TermGroup:
         terms: the functions.
         free: whether the weights have no prior.
         needs_load: whether they are functions of the torque of the bodies, which must be estimated first.
-        pair: the joints that it couples; it is used only where it predicts held-out motion far better.
+        pair: the joints that it couples; None for a group of one joint.
+        optional: whether it is used only where it predicts held-out motion better, a pair where far better.
     """
 
     name: str
@@ -33,6 +35,7 @@ class TermGroup:
     free: bool = False
     needs_load: bool = False
     pair: tuple[int, int] | None = None
+    optional: bool = False
 
     @property
     def joint(self) -> int | None:
@@ -43,9 +46,11 @@ class TermGroup:
 def term_groups(problem: Problem) -> tuple[TermGroup, ...]:
     """All groups for the joints of a problem."""
     v = np.concatenate([p.v for p in problem.fit])
-    reach = np.ptp(np.concatenate([p.q[p.keep] for p in problem.fit]), axis=0)
+    q = np.concatenate([p.q[p.keep] for p in problem.fit])
+    low, high = q.min(axis=0), q.max(axis=0)
     speed = np.maximum(np.quantile(np.abs(v), USUAL, axis=0), 1e-9)
-    groups = [g for j in range(problem.n_dof) for g in _of_joint(j, float(speed[j]), float(reach[j]))]
+    groups = [g for j in range(problem.n_dof) for g in _of_joint(j, float(speed[j]), float(high[j] - low[j]))]
+    groups += [g for j in range(problem.n_dof) for g in _over_position(j, float(low[j]), float(high[j]))]
     return (*groups, *(g for j in range(1, problem.n_dof) for g in _of_pair(j - 1, j)))
 
 
@@ -63,8 +68,24 @@ def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:
     ]
 
 
+def _over_position(j: int, low: float, high: float) -> list[TermGroup]:
+    """Torque, coarse and fine, and friction that change over the range of a joint."""
+    if high <= low:
+        return []
+    orders = {f"position_{k}": k for k in POSITION_WAVES}
+    terms = {kind: MotionTerm(kind, j, (high - low) / 2.0, centre=(high + low) / 2.0) for kind in orders}
+    coarse, fine = (
+        tuple(t for k, t in terms.items() if (orders[k] <= COARSE) == is_coarse) for is_coarse in (True, False)
+    )
+    path = tuple(
+        replace(terms["position_1"], kind=f"{kind}_path_{k}") for kind in ("viscous", "dry") for k in PATH_WAVES
+    )
+    names = {"position": coarse, "fine_position": fine, "path": path}
+    return [TermGroup(name, own, optional=True) for name, own in names.items()]
+
+
 def _of_pair(first: int, second: int) -> list[TermGroup]:
     """Friction and rotor of a motor that is coupled to two neighbouring joints, at any ratio."""
     smooth = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_viscous", "cross_inertia"))
     dry = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_dry_sum", "cross_dry_difference"))
-    return [TermGroup("tie", smooth, pair=(first, second)), TermGroup("tie", dry, pair=(first, second))]
+    return [TermGroup("tie", terms, pair=(first, second), optional=True) for terms in (smooth, dry)]

@@ -62,7 +62,7 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
     """
     groups, rest = term_groups(problem), usual_rest(problem)
     segments = [fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
-    first = make_design(problem, segments, [g for g in groups if not g.needs_load and g.pair is None])
+    first = make_design(problem, segments, [g for g in groups if not g.needs_load and not g.optional])
     ridge = fit_ridge(first, joint_equations(first), inefficiency=10.0, steps=15)
     segments = [_with_load(s, _layer(first, ridge.x, rest)) for s in segments]
     without_bodies = [replace(s, regressor=None) for s in segments]

@@ -15,6 +15,9 @@ FOLDS = 6
 GUARD = 3  # samples left out on both sides of a block: the length of the filter's response
 INEFFICIENCIES = (3.0, 10.0, 20.0, 40.0)  # candidates for the statistical inefficiency
 COUPLED = 0.5  # largest held-out error of a joint with a coupling over that without
+MUCH = 0.05  # held-out error over the power of the target, above which functions of the joint's position are tried
+BETTER = 0.5  # largest held-out error with these over that without, in the product over all joints
+SCREENED = 0.6  # of the joint's fitted error, all else held fixed: what lowers it by less is not validated
 MAYBE = 0.8  # of the fitted error: what lowers this by less does not halve that of held-out blocks
 IDLE = 0.98  # held-out error over the power of the target, above which a joint needs no terms
 FIRST, STEPS = 25, 5  # steps of the evidence's fixed point, initially and from a fit nearby
@@ -69,12 +72,16 @@ class Choice:
 def choose(design: Design, inefficiencies: Sequence[float] = INEFFICIENCIES) -> Choice | None:
     """argmin of the score over inefficiencies, couplings and joints with terms; None where no joint is predicted."""
     rows, groups = _Rows(design, joint_equations(design), block_folds(design)), design.groups
-    excluded = frozenset(i for i, g in enumerate(groups) if g.pair is not None)
+    excluded = frozenset(i for i, g in enumerate(groups) if g.optional)
     best = min(_fits_by_inefficiency(rows, inefficiencies, excluded), key=lambda c: c.score)
-    needed = frozenset().union(*(_coupling(rows, best, pair) for pair in {g.pair for g in groups if g.pair}))
-    idle = frozenset(i for i, g in enumerate(groups) if g.joint is not None and best.nmse[g.joint] > IDLE)
+    pairs, alone = {g.pair for g in groups if g.pair}, [i for i in excluded if groups[i].joint is not None]
+    needed = frozenset(i for i in alone if _is_needed(rows, best, i))
+    needed = needed.union(*(_coupling(rows, best, pair) for pair in pairs))
+    told = {groups[i].joint for i in needed}
+    idle = {j for j in range(len(design.joints)) if best.nmse[j] > IDLE and j not in told}
     if needed or idle:
-        best = min(_fits_by_inefficiency(rows, inefficiencies, (excluded - needed) | idle), key=lambda c: c.score)
+        without = (excluded - needed) | {i for i, g in enumerate(groups) if g.joint in idle}
+        best = min(_fits_by_inefficiency(rows, inefficiencies, without), key=lambda c: c.score)
     return best if np.any(best.nmse <= IDLE) else None
 
 
@@ -94,6 +101,27 @@ def _coupling(rows: _Rows, best: Choice, pair: tuple[int, int]) -> frozenset[int
         return frozenset()
     coupled = _validated(rows, best.inefficiency, best.excluded - own)
     return own if np.any((coupled.nmse < COUPLED * best.nmse)[list(pair)]) else frozenset()
+
+
+def _is_needed(rows: _Rows, best: Choice, index: int) -> bool:
+    """Whether held-out blocks are predicted better with an optional group of one joint."""
+    joint = rows.design.groups[index].joint
+    if joint is None or best.nmse[joint] < MUCH or _screened_ratio(rows, best, joint, index) > SCREENED:
+        return False
+    return _validated(rows, best.inefficiency, best.excluded - {index}).score < best.score + float(np.log(BETTER))
+
+
+def _screened_ratio(rows: _Rows, best: Choice, joint: int, index: int) -> float:
+    """Squared error of a joint with a group and its other functions free over that without, all else held fixed."""
+    own, sums, groups = rows.design.joints[joint], rows.total[joint], rows.design.groups
+    free = [g.unknowns for i, g in enumerate(groups) if i == index or (g.joint == joint and i not in best.excluded)]
+    at = np.flatnonzero(np.isin(own.unknowns, np.concatenate(free)) & (rows.design.scale[own.unknowns] > 0))
+    x = best.ridge.x[own.unknowns]
+    rest = (sums.moment - sums.gram @ x)[at]
+    gram = sums.gram[np.ix_(at, at)]
+    gram[np.diag_indices(at.size)] += 1e-9 * np.trace(gram) / max(1, at.size)
+    gained = float(rest @ np.linalg.solve(gram, rest)) if gram.any() else 0.0
+    return 1.0 - gained / max(sums.error(x), 1e-300)
 
 
 def _fitted_ratio(rows: _Rows, best: Choice, own: frozenset[int]) -> np.ndarray:

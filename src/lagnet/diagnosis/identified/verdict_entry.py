@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from lagnet.diagnosis.identified.curves import curve_over_position, friction_curve
 from lagnet.diagnosis.identified.fit import NORMAL_95, Identified
-from lagnet.models.corrected.motion_terms import BENDS, bend
+from lagnet.models.corrected.motion_terms import is_friction_over_position, is_over_position
 from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
 
 NOTABLE = 0.02  # of a joint's torque: a smaller change is not reported
-SPEEDS = 20  # points of a friction curve in each direction, closer near rest, where it bends; rest itself is a jump
 NAMED_OPEN = 3  # undetermined combinations that a sentence names, each by its first parameter
 UNITS = ("kg", *("kg m",) * 3, *("kg m²",) * 6)
 
@@ -50,6 +50,10 @@ INSTEAD = (
     "claims, judged by themselves."
 )
 BESIDE = " beside the named physics"
+OVER_POSITION = (
+    (lambda kind: kind.startswith("position_"), "A torque that depends on position acts at"),
+    (is_friction_over_position, "Friction changes over the range of"),
+)
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
 
 
@@ -85,28 +89,13 @@ def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
     for i, term in own:
         weight, half = float(found.layer.weights[i]), found.half_width(term)
         if weight:
-            entries.append(
-                {"term": term.kind, "scale": term.scale, "weight": weight, "ci95": [weight - half, weight + half]}
-            )
+            about = {"centre": term.centre} if is_over_position(term.kind) else {}
+            ends = [weight - half, weight + half]
+            entries.append({"term": term.kind, "scale": term.scale, **about, "weight": weight, "ci95": ends})
     if not any(e["weight"] for e in entries):
         return None
-    return {"joint": name, "terms": entries, "friction_curve": _curve(found, joint)}
-
-
-def _curve(found: Identified, joint: int) -> dict[str, list[float]]:
-    """Steady friction beside the named one over speed, without load [N m]."""
-    pairs = zip(found.layer.terms, found.layer.weights, strict=True)
-    terms = [(t, w) for t, w in pairs if t.joint == joint and t.other is None]
-    top = max((t.scale for t, _ in terms if t.kind in BENDS), default=1.0)
-    ahead = top * (np.arange(1, SPEEDS + 1) / SPEEDS) ** 2
-    speed = np.concatenate([-ahead[::-1], ahead])
-    sign, torque = np.sign(speed), np.zeros(speed.size)
-    for term, weight in terms:
-        if term.kind in BENDS:
-            torque = torque + weight * bend(BENDS[term.kind], speed / term.scale, sign)
-        elif term.kind in ("viscous", "dry"):
-            torque = torque + weight * (speed if term.kind == "viscous" else sign)
-    return {"speed": speed.tolist(), "torque": torque.tolist()}
+    curves = {"friction_curve": friction_curve(found, joint), "curve_over_position": curve_over_position(found, joint)}
+    return {"joint": name, "terms": entries, **{key: curve for key, curve in curves.items() if curve is not None}}
 
 
 def _late(found: Identified, joints: Sequence[str]) -> list[str]:
@@ -134,6 +123,9 @@ def _words(bodies: list, undetermined: list, own: list, ties: list, late: list[s
         parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
     if own:
         parts.append(f"Friction, rotor or offset{BESIDE} at {_listed([e['joint'] for e in own])}.")
+    for of_kind, words in OVER_POSITION:
+        there = [e["joint"] for e in own if any(of_kind(t["term"]) for t in e["terms"])]
+        parts += [f"{words} {_listed(there)}."] if there else []
     if late:
         parts.append(f"At {_listed(late)} torque lags behind the motion: a part of it is in phase with −a.")
     if ties:

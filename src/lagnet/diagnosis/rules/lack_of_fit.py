@@ -161,8 +161,13 @@ class LackOfFit(RejectionRule):
         return {j: [name for name, power in alone.items() if power[j] >= limits[j]] for j in largest}
 
     def _predictable(self, candidate: Candidate, shares: Shares) -> Shares:
-        """Those of the joints whose residual is predictable from the state, held out or between parts of the fit."""
-        return {j: s for j, s in shares.items() if _is_predictable(candidate, j, self.predictable)}
+        """Those of the joints whose residual is predictable from the state, by trees or by the identified layer."""
+        return {j: s for j, s in shares.items() if self._is_predicted(candidate, j, s)}
+
+    def _is_predicted(self, candidate: Candidate, joint: int, share: float) -> bool:
+        """Whether trees predict the residual of a joint, or the layer leaves as much less of the held-out mismatch."""
+        by_trees = _is_predictable(candidate, joint, self.predictable)
+        return by_trees or bool(candidate.left_by_layer[joint] < (1.0 - self.predictable) * share)
 
 
 def _undecided(candidate: Candidate, most: Shares) -> set[int]:

@@ -18,7 +18,7 @@ def layer_as_json(layer: IdentifiedLayer | None) -> dict[str, Any] | None:
     if layer is None:
         return None
     terms = [
-        {"kind": t.kind, "joint": t.joint, "scale": t.scale, "other": t.other, "weight": float(w)}
+        {"kind": t.kind, "joint": t.joint, "scale": t.scale, "other": t.other, "centre": t.centre, "weight": float(w)}
         for t, w in zip(layer.terms, layer.weights, strict=True)
     ]
     rest = {name: getattr(layer.rest, name).tolist() for name in REST}
@@ -59,7 +59,8 @@ def numbers_of(entry: Any, shape: tuple[int, ...]) -> np.ndarray:
 def _term(entry: dict[str, Any], n_dof: int) -> MotionTerm:
     kind, joint, scale, other = str(entry["kind"]), int(entry["joint"]), float(entry["scale"]), entry["other"]
     other = None if other is None else int(other)
+    centre = float(entry.get("centre", 0.0))  # format 4 has none
     known = kind in KINDS and 0 <= joint < n_dof and (other is None or 0 <= other < n_dof)
-    if not known or not np.isfinite(scale) or scale <= 0.0:
+    if not known or not np.isfinite([scale, centre]).all() or scale <= 0.0:
         raise ValueError(f"{kind} at joint {joint} is no term of the identified layer")
-    return MotionTerm(kind, joint, scale, other)
+    return MotionTerm(kind, joint, scale, other, centre)

@@ -2,8 +2,9 @@
 
 A weighted sum of them is a torque that recordings determine without a name for its cause: `dry` and `bristle` terms
 together are friction that builds up over several distances, `viscous`, `dry` and bends of speed a curve over speed,
-`load` friction that grows with the torque on the joint. Sources: Bittencourt 2012 (load and speed), Canudas de Wit 1995
-(bristles), Gautier 1990 (rotors, ties).
+`load` friction that grows with the torque on the joint, waves over position a torque or a friction that changes along
+the joint's range. Sources: Bittencourt 2012 (load and speed), Canudas de Wit 1995 (bristles), Gautier 1990 (rotors,
+ties).
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from lagnet.effects.motion import Motion
 from lagnet.effects.rest import blurred_sign, resting
 from lagnet.types import Trajectory
 
+POSITION_WAVES = range(1, 9)  # half waves of a torque over the range of a joint
+PATH_WAVES = range(1, 4)  # and of its friction
+
 
 @dataclass(frozen=True)
 class MotionTerm:
@@ -28,12 +32,14 @@ class MotionTerm:
         joint: index of the joint that feels it.
         scale: what the function is stretched by: a speed [rad/s], a distance [rad]; 1 where there is nothing.
         other: index of the neighbouring joint that it ties to; None for a function of one joint.
+        centre: position about which a wave is stretched [rad]; 0 for all else.
     """
 
     kind: str
     joint: int
     scale: float = 1.0
     other: int | None = None
+    centre: float = 0.0
 
     @property
     def rows(self) -> tuple[int, ...]:
@@ -50,7 +56,7 @@ class MotionTerm:
             rest: what happens at rest; None where samples stand for themselves, and what has memory slides steadily.
         """
         mine, theirs = (self.joint, self.other) if row == self.joint else (self.other, self.joint)
-        return KINDS[self.kind](Seen(motion, load, int(mine or 0), theirs, self.scale, rest))
+        return KINDS[self.kind](Seen(motion, load, int(mine or 0), theirs, self.scale, rest, self.centre))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +74,7 @@ class Rest:
 
 @dataclass(frozen=True)
 class Seen:
-    """What a function is given: the motion, the load, the joint that feels it, its partner, scale and rest."""
+    """What a function is given: the motion, the load, the joint that feels it, its partner, scale, rest and centre."""
 
     motion: Motion
     load: Trajectory
@@ -76,6 +82,7 @@ class Seen:
     other: int | None
     scale: float
     rest: Rest | None
+    centre: float = 0.0
 
     @property
     def speed(self) -> np.ndarray:
@@ -120,6 +127,26 @@ def _relative(seen: Seen, sense: float) -> np.ndarray:
     return np.tanh((seen.speed + sense * motion.v[:, seen.partner]) / blur)
 
 
+def wave(order: int, position: np.ndarray, centre: float, scale: float) -> np.ndarray:
+    """cos(k π (u + 1) / 2) of u = (q − centre) / scale, constant beyond u = ±1: what was not seen is not told."""
+    return np.cos(order * np.pi / 2.0 * (np.clip((position - centre) / scale, -1.0, 1.0) + 1.0))
+
+
+def is_over_position(kind: str) -> bool:
+    """Whether functions of a kind change over the range of the joint."""
+    return kind.startswith("position_") or is_friction_over_position(kind)
+
+
+def is_friction_over_position(kind: str) -> bool:
+    """Whether functions of a kind are friction that changes over the range of the joint."""
+    return kind.startswith(("viscous_path_", "dry_path_"))
+
+
+def _along(order: int, times: Callable[[Seen], np.ndarray]) -> Callable[[Seen], np.ndarray]:
+    """A wave over the joint's position times a function of its motion."""
+    return lambda x: wave(order, x.motion.q[:, x.joint], x.centre, x.scale) * times(x)
+
+
 BENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "early_bend": lambda u: np.tanh(u / 0.1),
     "late_bend": lambda u: np.tanh(u / 0.3),
@@ -154,6 +181,9 @@ KINDS: dict[str, Callable[[Seen], np.ndarray]] = {
     "bristle": _bristle,
     "lag": _lag,
     "spring": lambda x: x.motion.q[:, x.joint],
+    **{f"position_{k}": _along(k, lambda x: np.ones(len(x.motion.q))) for k in POSITION_WAVES},
+    **{f"viscous_path_{k}": _along(k, lambda x: x.speed) for k in PATH_WAVES},
+    **{f"dry_path_{k}": _along(k, lambda x: x.direction(x.joint)) for k in PATH_WAVES},
     "cross_viscous": lambda x: x.motion.v[:, x.partner],
     "cross_inertia": lambda x: x.motion.a[:, x.partner],
     "cross_dry_sum": lambda x: _relative(x, 1.0),

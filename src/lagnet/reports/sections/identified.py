@@ -1,4 +1,4 @@
-"""What recordings determine without saying which cause it is: bodies, friction over speed, ties, and what is open."""
+"""What recordings determine without saying which cause it is: bodies, curves over speed and position, ties."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lagnet.reports.contents.findings import Findings
-from lagnet.reports.figures.friction_curves import friction_curves
+from lagnet.reports.figures.joint_curves import FRICTION, OVER_POSITION, joint_curves
 from lagnet.reports.page import Section, section
 from lagnet.reports.wording import with_interval
 
@@ -23,16 +23,16 @@ TIES = {
 
 
 def build(findings: Findings) -> Section | None:
-    """Words, combinations of inertial parameters, friction curves, ties; None where nothing was identified."""
+    """Words, combinations of inertial parameters, curves, ties; None where nothing was identified."""
     found = findings.verdict.get("identified") or {}
     if not any(found.get(part) for part in ("bodies", "joints", "ties")):
         return None
-    figure = friction_curves(findings, found["joints"])
+    figures = [joint_curves(findings, found["joints"], kind) for kind in (FRICTION, OVER_POSITION)]
     rows = [_body(entry) for entry in found["bodies"]]
     return section(
         "identified",
         "Identified, not attributed",
-        [figure] if figure else [],
+        [figure for figure in figures if figure],
         words=found["words"],
         rows=rows[:SHOWN],
         more=rows[SHOWN:],
