@@ -72,10 +72,21 @@ def test_the_same_seed_gives_the_same_plant() -> None:
     np.testing.assert_array_equal(first.recordings[0].tau, second.recordings[0].tau)
 
 
+def test_a_cause_without_torque_is_not_asked_for_and_a_large_one_is() -> None:
+    spring, first_link = plant(71, 32, SECONDS), plant(71, 30, SECONDS)  # 30 scales a link that turns about its axis
+    assert all(spring.shown)
+    assert [(h.effect, h.joint) for h in first_link.hidden] == [("link_inertia", 0)]
+    assert first_link.shown == (False,)
+
+
 def test_figures_count_claims_and_causes() -> None:
-    listed = {"listed": 1, "hidden": [{}], "found": 1, "claims": ["a at x", "b at y"], "wrong": ["b at y"]}
+    cause, strange = {"effect": "payload"}, {"effect": UNLISTED[0]}
+    listed = {"listed": 1, "hidden": [cause], "found": 1, "claims": ["a at x", "b at y"], "wrong": ["b at y"]}
     empty = {"listed": 0, "hidden": [], "found": 0, "claims": [], "wrong": []}
-    found = figures([c | {"processor_seconds": 1.0} for c in (listed, empty)])
+    unseen = {**empty, "hidden": [cause], "not_shown": ["payload"]}
+    unlisted = {**empty, "hidden": [strange]}
+    found = figures([{"not_shown": [], **c, "processor_seconds": 1.0} for c in (listed, empty, unseen, unlisted)])
+    assert (found["causes_not_shown"], found["plants_with_unlisted_physics"]) == (1, 1)
     assert (found["precision"], found["recall"], found["of_these_with_a_claim"]) == (0.5, 1.0, 0)
     assert judge(found) == {"precision": False, "recall": True, "nothing_hidden": True}
     assert json.dumps(found)

@@ -23,16 +23,22 @@ HELD_OUT_FREE = (1, 3)  # runs in which nothing touches the arm
 REACH, SPEED = 2.6, 2.0  # [rad], [rad/s] where the arm says nothing, or more
 STARTS = 2.0  # [s] cut off
 TRIES = 12
+SHOWN = 0.5  # of the noise, that the torque of a cause must reach at some joint to be asked for
 
 
 @dataclass(frozen=True)
 class Plant:
-    """An arm, what is hidden in it, and its recordings, the last to be held out."""
+    """An arm, what is hidden in it, and its recordings, the last to be held out.
+
+    Args:
+        shown: whether each cause has a torque of at least half the noise in the first recording.
+    """
 
     name: str
     robot: Robot
     hidden: tuple[Hidden, ...]
     recordings: tuple[Recording, ...]
+    shown: tuple[bool, ...]
 
 
 def plant(seed: int, index: int, seconds: float) -> Plant:
@@ -63,7 +69,9 @@ def _drawn(name: str, kind: str, seconds: float, rng: np.random.Generator) -> Pl
     scatter = noise * np.maximum(np.sqrt(np.mean([np.mean(w.tau**2, axis=0) for w in written], axis=0)), 1e-3)
     step, speeds = float(rng.choice([1e-5, 1e-4])), bool(rng.random() < 0.5)
     recordings = tuple(_sensed(w, robot.joints, hidden, scatter, step, speeds, rng) for w in written)
-    return Plant(name, robot, hidden, recordings)
+    others = [_run(urdf, free, [h for h in hidden if h is not cause], references[0], seconds, rate) for cause in hidden]
+    shown = [_shows(robot, written[0], other, hidden, h, scatter) for h, other in zip(hidden, others, strict=True)]
+    return Plant(name, robot, hidden, recordings, tuple(shown))
 
 
 def _arm(rng: np.random.Generator) -> tuple[Robot, str]:
@@ -110,17 +118,21 @@ def _run(
     return MujocoArm(urdf, hidden).run(free, reference, seconds, rate)
 
 
-def _sensed(
-    written: Written,
-    joints: tuple[str, ...],
-    hidden: Sequence[Hidden],
-    scatter: np.ndarray,
-    step: float,
-    speeds: bool,
-    rng: np.random.Generator,
-) -> Recording:
-    """The recording: faulty sensors, noise of torque, positions in steps of the encoder."""
-    time, q, v, tau = written.time, written.q.copy(), written.v, written.tau.copy()
+def _shows(
+    robot: Robot, with_it: Written, without: Written, hidden: Sequence[Hidden], cause: Hidden, scatter: np.ndarray
+) -> bool:
+    """Whether what the model leaves unexplained differs with a cause by half of the noise, at some joint."""
+    left = []
+    for written, causes in ((with_it, hidden), (without, [h for h in hidden if h is not cause])):
+        q, tau = _faulty(written, causes)
+        a = np.gradient(written.v, written.time, axis=0)
+        left.append((tau - robot.inverse_dynamics(q, written.v, a))[written.time >= STARTS])
+    return bool(np.any(np.sqrt(np.mean((left[0] - left[1]) ** 2, axis=0)) >= SHOWN * scatter))
+
+
+def _faulty(written: Written, hidden: Sequence[Hidden]) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and torque as faulty sensors read them, without noise."""
+    time, q, tau = written.time, written.q.copy(), written.tau.copy()
     for cause in hidden:
         j, values = cause.joint, cause.values
         match cause.effect:
@@ -134,6 +146,21 @@ def _sensed(
                 tau[:, j] = np.clip(tau[:, j], -values["most"], values["most"])
             case "time_delay":
                 tau[:, j] = np.interp(time - values["T"], time, tau[:, j])
+    return q, tau
+
+
+def _sensed(
+    written: Written,
+    joints: tuple[str, ...],
+    hidden: Sequence[Hidden],
+    scatter: np.ndarray,
+    step: float,
+    speeds: bool,
+    rng: np.random.Generator,
+) -> Recording:
+    """The recording: faulty sensors, noise of torque, positions in steps of the encoder."""
+    time, v = written.time, written.v
+    q, tau = _faulty(written, hidden)
     tau += scatter * rng.standard_normal(tau.shape)
     seen = v + 0.002 * np.sqrt(np.mean(v**2, axis=0)) * rng.standard_normal(v.shape) if speeds else None
     keep = time >= STARTS

@@ -33,12 +33,14 @@ def scored(case: Plant, result: Diagnosis) -> dict[str, Any]:
     """Which claims are right, and which causes were found."""
     listed = [h for h in case.hidden if h.effect not in UNLISTED]
     right = [any(_says(e, h, case.robot.joints) or _is_its_rotor(e, h, case) for h in listed) for e in result.effects]
-    found = [any(_says(e, h, case.robot.joints) for e in result.effects) for h in listed]
+    asked = [h for h, shown in zip(case.hidden, case.shown, strict=True) if shown and h in listed]
+    found = [any(_says(e, h, case.robot.joints) for e in result.effects) for h in asked]
     return {
         "plant": case.name,
         "joints": len(case.robot.joints),
         "hidden": [asdict(h) for h in case.hidden],
-        "listed": len(listed),
+        "not_shown": [h.effect for h, shown in zip(case.hidden, case.shown, strict=True) if not shown],
+        "listed": len(asked),
         "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in result.effects],
         "wrong": [f"{e.effect} at {e.joint}" for e, r in zip(result.effects, right, strict=True) if not r],
         "found": int(np.sum(found)),
@@ -76,13 +78,14 @@ def figures(cases: Sequence[dict[str, Any]]) -> dict[str, Any]:
     claims, wrong = (sum(len(c[k]) for c in cases) for k in ("claims", "wrong"))
     listed, found = (sum(c[k] for c in cases) for k in ("listed", "found"))
     empty = [c for c in cases if not c["hidden"]]
-    strange = [c for c in cases if c["hidden"] and not c["listed"]]
+    strange = [c for c in cases if c["hidden"] and all(h["effect"] in UNLISTED for h in c["hidden"])]
     return {
         "plants": len(cases),
         "claims": claims,
         "wrong_claims": wrong,
         "precision": (claims - wrong) / claims if claims else None,
         "causes": listed,
+        "causes_not_shown": sum(len(c["not_shown"]) for c in cases),
         "found": found,
         "recall": found / listed if listed else None,
         "plants_with_nothing_hidden": len(empty),

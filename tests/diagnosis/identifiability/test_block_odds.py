@@ -64,3 +64,12 @@ def test_held_out_errors_are_those_of_a_fit_without_the_fold() -> None:
     left = rows[3][:, -1] - rows[3][:, columns] @ theta
     assert held_out_errors(blocks, folds, columns)[3] == pytest.approx(left @ left, rel=1e3 * IDENTITY)
     assert held_out_errors(blocks, folds, columns[:0])[3] == pytest.approx(blocks[3, -1, -1], rel=IDENTITY)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_rival_that_a_fold_leaves_undetermined_has_the_greatest_odds_against_it(sign) -> None:
+    sound, lost = np.full((1, BLOCKS), 2.0), np.full((1, BLOCKS), 2.0)
+    lost[0, 1] = np.inf
+    pair = (sound, lost) if sign > 0 else (lost, sound)
+    with np.errstate(all="raise"):
+        assert log10_odds([10.0], *pair, [0.0]) == sign * GREATEST

@@ -47,6 +47,9 @@ def log10_odds(pieces: ArrayLike, here: np.ndarray, there: np.ndarray, floors: A
     """
     weight = 0.5 * np.asarray(pieces)
     sums = [np.maximum(e.sum(axis=1), np.maximum(floors, 1e-300)) for e in (here, there)]
+    here_lost, there_lost = (bool(np.isinf(s).any()) for s in sums)  # one that a fold leaves undetermined
+    if here_lost or there_lost:
+        return GREATEST * (there_lost - here_lost)
     gain = float(np.sum(weight * np.log(sums[1] / sums[0])))
     influence = weight @ (there / sums[1][:, None] - here / sums[0][:, None])
     felt = int(np.sum(np.any(here + there > 0.0, axis=0)))
