@@ -1,8 +1,8 @@
 """The identified layer of a corrected model in the terms of a simulator: what named effects would add the same torque.
 
 Changed bodies and weights of viscous and dry friction, rotor, offset, load friction and spring act as the effects of
-those names do. Curves over speed, bristles, lag and ties between joints have no such effect, and what would make a
-damping, a friction or a rotor negative is no arm that moves forward.
+those names do. Curves over speed and position, bristles, lag and ties between joints have no such effect, and what
+would make a damping, a friction or a rotor negative is no arm that moves forward.
 """
 
 from __future__ import annotations
