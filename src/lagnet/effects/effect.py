@@ -108,6 +108,10 @@ class Effect(ABC):
         """Values of a plainer form, that stand unless those of the shape explain noticeably more; None: none is."""
         return None
 
+    def further_term(self, values: Mapping[str, float]) -> tuple[str, float] | None:
+        """A law of `contains` that this one is without a term, and that term over the rest; None by default."""
+        return None
+
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coefficients of `columns`."""
         lower = np.array([p.lower for p in self.parameters])

@@ -80,6 +80,18 @@ def uneven_friction_beside_a_spring(b: Bench) -> Candidate:
     return b.of("friction and spring", law, "asymmetric_friction", "joint_spring")
 
 
+def rising_friction_as_stribeck(b: Bench) -> Candidate:
+    """Friction that rises with speed: what Stribeck friction has more of at rest is nothing."""
+    return b.of("rising", lambda q, v, a, t: 2.0 * np.tanh(v / 1e-3) + 1.5 * v, "stribeck_friction")
+
+
+def stribeck_friction(b: Bench) -> Candidate:
+    def law(q, v, a, tau):
+        return (2.0 + 1.5 * np.exp(-((v / 0.2) ** 2))) * np.tanh(v / 1e-3)
+
+    return b.of("Stribeck", law, "stribeck_friction")
+
+
 def noise_as_elasticity(b: Bench) -> Candidate:
     noisy = replace(b.plant(), noise=0.05)
     return b.candidate("noise", noisy.record, ["joint_elasticity"])
@@ -203,6 +215,7 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
         "asymmetric_friction",
         uneven_friction_beside_a_spring,
     ),
+    "contained_law": (rising_friction_as_stribeck, "stribeck_friction", stribeck_friction),
     "no_holdout_gain": (friction_of_a_perfect_joint, "viscous_friction", friction_named_rightly),
     "negligible_torque": (friction_of_a_perfect_joint, "viscous_friction", friction_named_rightly),
     "measured_torque_leakage": (noise_as_elasticity, "joint_elasticity", elasticity),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
+from lagnet.diagnosis.rules.contained_law import ContainedLaw
 from lagnet.diagnosis.rules.distant_centre import DistantCentre
 from lagnet.diagnosis.rules.gain_beside_free_links import GainBesideFreeLinks
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
@@ -18,6 +19,7 @@ from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
 
 RULES: tuple[RejectionRule, ...] = (
     CanonicalForm(),
+    ContainedLaw(),
     NoHoldoutGain(),
     NegligibleTorque(),
     MeasuredTorqueLeakage(),
