@@ -2,7 +2,7 @@
 
 Friction, rotors and offsets are functions of the layer, too, estimated there together with whatever else the recordings
 determine. An effect whose function keeps its weight in such company does not stand for a part of something else. One
-that changes along the range of its joint by more than half of its mean is not the law of that name.
+that changes along the range of its joint, by more than a tenth of its power, is not the law of that name.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.diagnosis.identified.curves import curve_over_position
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import stacked
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.modelled import COUNTERPARTS
-from lagnet.models.corrected.motion_terms import is_friction_over_position, is_over_position
 from lagnet.models.corrected.named_effects import NamedEffect
 
 ALIKE = 0.5  # of an effect's value, within which the weight may differ from it
-VARIES = 0.5  # of the torque of a function, beyond which its change along the range of the joint is another law
+VARIES = 0.1  # variance over the range of a joint over the squared mean: beyond, one value is not its law
 
 
 def is_borne_out(found: Identified, effect: NamedEffect) -> bool:
@@ -43,24 +43,12 @@ def is_borne_out(found: Identified, effect: NamedEffect) -> bool:
 
 
 def _changes_along_the_range(found: Identified, kind: str, joint: int) -> bool:
-    """Whether friction, or a torque of position, that the layer has over the range exceeds half of a function's."""
-    friction = kind != "offset"
-    own = [t.kind for t in found.layer.terms if t.joint == joint and is_over_position(t.kind)]
-    waves = tuple(k for k in own if is_friction_over_position(k) == friction)
-    return bool(waves) and _usual_torque(found, waves, joint) > VARIES * _usual_torque(found, (kind,), joint)
-
-
-def _usual_torque(found: Identified, kinds: tuple[str, ...], joint: int) -> float:
-    """Root mean square of what functions of some kinds add at their joint on fitted motion [N m]."""
-    design, rows = found.design, found.design.joints[joint]
-    own = [
-        design.n_bodies + i
-        for i, t in enumerate(design.terms)
-        if (t.joint, t.other) == (joint, None) and t.kind in kinds
-    ]
-    at = np.flatnonzero(np.isin(rows.unknowns, own))
-    torque = rows.columns[rows.valid][:, at] @ found.choice.ridge.x[rows.unknowns[at]]
-    return float(np.sqrt(np.mean(torque**2))) if torque.size else 0.0
+    """Whether one value explains less than ten times what friction, or a torque of position, differs from it."""
+    curve = curve_over_position(found, joint)
+    if curve is None:
+        return False
+    told = np.asarray(curve["torque" if kind == "offset" else "friction"])
+    return bool(np.var(told) > VARIES * np.mean(told) ** 2)
 
 
 def _weight(found: Identified, kind: str, joint: int) -> tuple[float, float]:
