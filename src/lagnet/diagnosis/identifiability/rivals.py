@@ -14,6 +14,7 @@ from lagnet.diagnosis.selection.joint_search import gains_over
 from lagnet.diagnosis.selection.joint_view import JointView, compatible
 
 SHOWN = 6  # rivals that the evidence lists
+REST = 0.5  # of what a law leaves above the noise, that a wider one may leave to account for it
 
 
 @dataclass(frozen=True)
@@ -75,10 +76,11 @@ def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -
 
 
 def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
-    """The wider law that the evidence prefers and that gains enough, if any.
+    """The wider law that the evidence prefers, if it gains enough or accounts for most of what is left.
 
     The search refused it at the least shape that was tried: a Stribeck speed this close to the zone that noise blurs
-    could be the blur itself. Then both stay open.
+    could be the blur itself. Or as too little beside what the plain law explains, whose form is never exact: but real
+    joints leave more than one further term would account for. Then both stay open.
     """
     hypotheses = view.equations.library.hypotheses
     others = tuple(k for k in own if k != index)
@@ -89,7 +91,15 @@ def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) ->
     best = max(scores, key=lambda k: scores[k], default=None)
     if best is None or (scores[best] - view.score(own)) / np.log(10.0) < view.limits.tie_odds:
         return set()
-    return {hypotheses[best].effect} if gains_over(view, (*others, best), best, own) else set()
+    wider_one = (*others, best)
+    is_open = gains_over(view, wider_one, best, own) or _accounts_for_what_is_left(view, wider_one, own)
+    return {hypotheses[best].effect} if is_open else set()
+
+
+def _accounts_for_what_is_left(view: JointView, wider: tuple[int, ...], own: tuple[int, ...]) -> bool:
+    """E(wider) − E_noise ≤ (E(own) − E_noise) / 2 where E(own) is above the noise."""
+    left, after = (view.error(s) - view.noise_power for s in (own, wider))
+    return left > 0.0 and after <= REST * left
 
 
 def replacements(
