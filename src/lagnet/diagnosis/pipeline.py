@@ -20,6 +20,7 @@ from lagnet.diagnosis.free_bodies import (
 )
 from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
 from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
+from lagnet.diagnosis.identifiability.first_joint_zero import tie_tilt_and_first_zero
 from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
 from lagnet.diagnosis.identifiability.unexcited_rivals import with_unexcited_rivals
 from lagnet.diagnosis.problem.intervals import lasting
@@ -109,7 +110,8 @@ def _beside_free_links(candidate: Candidate, given: Inputs) -> DiagnosisState | 
 def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
     comparisons = compare_with_rivals(candidate.equations, candidate.selection)
     comparisons = with_unexcited_rivals(candidate.problem, candidate.library, candidate.selection, comparisons)
-    return tie_equivalent_laws(candidate.library, comparisons, candidate.effects)
+    comparisons = tie_equivalent_laws(candidate.library, comparisons, candidate.effects)
+    return tie_tilt_and_first_zero(candidate.problem, candidate.library, comparisons, candidate.effects)
 
 
 def with_misspecification(state: DiagnosisState) -> DiagnosisState:
