@@ -13,7 +13,7 @@ from lagnet.errors import ModelError
 from lagnet.models.corrected.folder import FILE, save_corrected
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
-from lagnet.models.corrected.motion_terms import KINDS, MotionTerm, Rest, is_over_position
+from lagnet.models.corrected.motion_terms import KINDS, OVER_POSITION, MotionTerm, Rest
 from lagnet.rigid_body.random_arm import random_arm
 
 N = 3
@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 def model():
     arm = random_arm(N, seed=5, kinds=("revolute",))
     pairs = {kind for kind in KINDS if kind.startswith("cross")}
-    terms = tuple(MotionTerm(k, 1, 0.3, 2 if k in pairs else None, 0.2 if is_over_position(k) else 0.0) for k in KINDS)
+    terms = tuple(MotionTerm(k, 1, 0.3, 2 if k in pairs else None, 0.2 if k in OVER_POSITION else 0.0) for k in KINDS)
     weights = np.linspace(0.1, 0.4, len(terms))
     rest = Rest(np.full(N, 0.01), np.array([1.0, 0.5, 0.0]))
     layer = IdentifiedLayer(0.05 * arm.inertial_parameters(), terms, weights, rest)
@@ -113,3 +113,16 @@ def test_an_unknown_layer_is_refused(model, tmp_path) -> None:
     folder = save_corrected(model, tmp_path / "corrected")
     with pytest.raises(ModelError, match="named"):
         lagnet.load_robot(folder, layers="all")
+
+
+def test_a_layer_of_an_earlier_format_has_no_centre_of_waves(model, tmp_path) -> None:
+    plain = replace(model.identified, terms=model.identified.terms[:4], weights=model.identified.weights[:4])
+    folder, (time, q, v, a) = save_corrected(replace(model, identified=plain), tmp_path / "corrected"), motion()
+    file = folder / FILE
+    text = json.loads(file.read_text())
+    text["format"] = 4
+    for term in text["identified"]["terms"]:
+        del term["centre"]
+    file.write_text(json.dumps(text))
+    got, want = (m.torque_along(time, q, v, a) for m in (lagnet.load_robot(folder), replace(model, identified=plain)))
+    np.testing.assert_allclose(got, want, rtol=ROUNDING, atol=ROUNDING)

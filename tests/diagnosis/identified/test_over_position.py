@@ -11,7 +11,7 @@ from lagnet.diagnosis.identified.borne_out import is_borne_out
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.identified.verdict_entry import identified_as_json
 from lagnet.diagnosis.problem.problem import pose_problem
-from lagnet.models.corrected.motion_terms import is_friction_over_position, is_over_position, wave
+from lagnet.models.corrected.motion_terms import OVER_POSITION, wave
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.rigid_body.random_arm import random_arm
@@ -59,7 +59,7 @@ def test_what_changes_over_the_range_is_corrected_and_told(law, friction) -> Non
     problem = posed_on_several(arm, law(arm))
     found = identify(problem, ())
     waves = {
-        t.joint for t, w in zip(found.layer.terms, found.layer.weights, strict=True) if w and is_over_position(t.kind)
+        t.joint for t, w in zip(found.layer.terms, found.layer.weights, strict=True) if w and t.kind in OVER_POSITION
     }
     assert waves == {JOINT}
     before, after = errors_in_range(problem, corrected(problem, found))
@@ -75,7 +75,7 @@ def test_friction_of_one_value_gets_no_wave() -> None:
     arm = random_arm(3, seed=5, kinds=("revolute",))
     size = usual_load(arm)
     problem = posed_on_several(arm, lambda q, v, a, load: 0.2 * size * (np.tanh(v / 0.01) + v))
-    assert not [t for t in identify(problem, ()).layer.terms if is_over_position(t.kind)]
+    assert not [t for t in identify(problem, ()).layer.terms if t.kind in OVER_POSITION]
 
 
 def test_no_mean_of_friction_that_changes_over_the_range_is_borne_out() -> None:
@@ -88,11 +88,3 @@ def test_no_mean_of_friction_that_changes_over_the_range_is_borne_out() -> None:
 def test_a_wave_is_constant_beyond_the_range_that_was_seen() -> None:
     ends, beyond = wave(3, np.array([-0.5, 1.5]), 0.5, 1.0), wave(3, np.array([-9.0, 7.0]), 0.5, 1.0)
     np.testing.assert_array_equal(ends, beyond)
-
-
-@pytest.mark.parametrize(
-    ("kind", "over_position", "friction"),
-    [("position_8", True, False), ("dry_path_1", True, True), ("viscous_path_3", True, True), ("spring", False, False)],
-)
-def test_kinds_over_position_are_known_by_name(kind, over_position, friction) -> None:
-    assert (is_over_position(kind), is_friction_over_position(kind)) == (over_position, friction)

@@ -84,6 +84,20 @@ def test_one_curve_a_joint_on_axes_of_its_own_within_the_figure(all_layers) -> N
             assert a[1] < b[0] or b[1] < a[0] or a[3] < b[2] or b[3] < a[2]
 
 
+def test_what_changes_over_the_range_of_a_joint_has_a_plot_over_position(all_layers) -> None:
+    found = copy.deepcopy(all_layers.verdict["identified"])
+    found["joints"][1]["curve_over_position"] = {
+        "position": [-1.0, 0.0, 1.0], "torque": [0.0, 5.0, 9.0], "friction": [40.0, 20.0, 30.0], "at_speed": 0.5,
+    }  # fmt: skip
+    part = identified.build(findings_of(all_layers, identified=found))
+    _, figure = part.figures
+    assert figure.layout["xaxis"]["title"]["text"] == "position [rad]"
+    assert figure.layout["yaxis"]["title"]["text"] == "torque [N m]"
+    assert [trace["name"] for trace in figure.traces] == [found["joints"][1]["joint"]] * 2
+    assert [trace["line"]["dash"] for trace in figure.traces] == ["solid", "dash"]
+    assert "Torque and friction over position" in str(part.body)
+
+
 def test_a_curve_that_is_nothing_beside_the_joints_torque_is_not_drawn(all_layers) -> None:
     found = copy.deepcopy(all_layers.verdict["identified"])
     tiny = found["joints"][1]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from lagnet.diagnosis.identified.fit import Identified
-from lagnet.models.corrected.motion_terms import BENDS, MotionTerm, bend, is_over_position, wave
+from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTerm, bend, wave
 
 SPEEDS = 20  # points of a friction curve in each direction, closer near rest, where it bends; rest itself is a jump
 POSITIONS = 41  # points over the range of a joint
@@ -24,7 +24,7 @@ def friction_curve(found: Identified, joint: int) -> dict[str, list[float]]:
 
 def curve_over_position(found: Identified, joint: int) -> dict[str, list[float] | float] | None:
     """Torque beside the named one that depends on position, and friction at a usual speed [N m]; None without."""
-    own = [(term, weight) for term, weight in _own(found, joint) if is_over_position(term.kind)]
+    own = [(term, weight) for term, weight in _own(found, joint) if term.kind in OVER_POSITION]
     if not own:
         return None
     centre, scale = own[0][0].centre, own[0][0].scale
@@ -33,12 +33,12 @@ def curve_over_position(found: Identified, joint: int) -> dict[str, list[float] 
     torque = np.full(POSITIONS, float(sum(offsets)))
     friction = np.full(POSITIONS, float(_friction(found, joint, np.array([speed]))[0]))
     for term, weight in own:
-        kind, order = term.kind.rsplit("_", 1)
-        shape = weight * wave(int(order), position, centre, scale)
-        if kind == "position":
+        what, order = OVER_POSITION[term.kind]
+        shape = weight * wave(order, position, centre, scale)
+        if what == "position":
             torque += shape
         else:
-            friction += shape * (speed if kind == "viscous_path" else 1.0)
+            friction += shape * (speed if what == "viscous_path" else 1.0)
     return {"position": position.tolist(), "torque": torque.tolist(), "friction": friction.tolist(), "at_speed": speed}
 
 

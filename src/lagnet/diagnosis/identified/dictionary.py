@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.models.corrected.motion_terms import BENDS, PATH_WAVES, POSITION_WAVES, MotionTerm
+from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTerm
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
@@ -72,16 +72,11 @@ def _over_position(j: int, low: float, high: float) -> list[TermGroup]:
     """Torque, coarse and fine, and friction that change over the range of a joint."""
     if high <= low:
         return []
-    orders = {f"position_{k}": k for k in POSITION_WAVES}
-    terms = {kind: MotionTerm(kind, j, (high - low) / 2.0, centre=(high + low) / 2.0) for kind in orders}
-    coarse, fine = (
-        tuple(t for k, t in terms.items() if (orders[k] <= COARSE) == is_coarse) for is_coarse in (True, False)
-    )
-    path = tuple(
-        replace(terms["position_1"], kind=f"{kind}_path_{k}") for kind in ("viscous", "dry") for k in PATH_WAVES
-    )
-    names = {"position": coarse, "fine_position": fine, "path": path}
-    return [TermGroup(name, own, optional=True) for name, own in names.items()]
+    groups: dict[str, list[MotionTerm]] = {}
+    for kind, (what, order) in OVER_POSITION.items():
+        name = "path" if what != "position" else "position" if order <= COARSE else "fine_position"
+        groups.setdefault(name, []).append(MotionTerm(kind, j, (high - low) / 2.0, centre=(high + low) / 2.0))
+    return [TermGroup(name, tuple(terms), optional=True) for name, terms in groups.items()]
 
 
 def _of_pair(first: int, second: int) -> list[TermGroup]:

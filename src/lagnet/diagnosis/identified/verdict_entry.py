@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.identified.curves import curve_over_position, friction_curve
 from lagnet.diagnosis.identified.fit import NORMAL_95, Identified
-from lagnet.models.corrected.motion_terms import is_friction_over_position, is_over_position
+from lagnet.models.corrected.motion_terms import OVER_POSITION
 from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
 
 NOTABLE = 0.02  # of a joint's torque: a smaller change is not reported
@@ -50,10 +50,10 @@ INSTEAD = (
     "claims, judged by themselves."
 )
 BESIDE = " beside the named physics"
-OVER_POSITION = (
-    (lambda kind: kind.startswith("position_"), "A torque that depends on position acts at"),
-    (is_friction_over_position, "Friction changes over the range of"),
-)
+ALONG = {
+    "A torque that depends on position acts at": ("position",),
+    "Friction changes over the range of": ("viscous_path", "dry_path"),
+}
 NOTHING = "Beside the named physics the recordings determine nothing that would predict unseen motion better."
 
 
@@ -89,7 +89,7 @@ def _joint(found: Identified, joint: int, name: str) -> dict[str, Any] | None:
     for i, term in own:
         weight, half = float(found.layer.weights[i]), found.half_width(term)
         if weight:
-            about = {"centre": term.centre} if is_over_position(term.kind) else {}
+            about = {"centre": term.centre} if term.kind in OVER_POSITION else {}
             ends = [weight - half, weight + half]
             entries.append({"term": term.kind, "scale": term.scale, **about, "weight": weight, "ci95": ends})
     if not any(e["weight"] for e in entries):
@@ -123,8 +123,8 @@ def _words(bodies: list, undetermined: list, own: list, ties: list, late: list[s
         parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
     if own:
         parts.append(f"Friction, rotor or offset{BESIDE} at {_listed([e['joint'] for e in own])}.")
-    for of_kind, words in OVER_POSITION:
-        there = [e["joint"] for e in own if any(of_kind(t["term"]) for t in e["terms"])]
+    for words, whats in ALONG.items():
+        there = [e["joint"] for e in own if any(OVER_POSITION.get(t["term"], ("",))[0] in whats for t in e["terms"])]
         parts += [f"{words} {_listed(there)}."] if there else []
     if late:
         parts.append(f"At {_listed(late)} torque lags behind the motion: a part of it is in phase with −a.")

@@ -162,12 +162,12 @@ class LackOfFit(RejectionRule):
 
     def _predictable(self, candidate: Candidate, shares: Shares) -> Shares:
         """Those of the joints whose residual is predictable from the state, by trees or by the identified layer."""
-        return {j: s for j, s in shares.items() if self._is_predicted(candidate, j, s)}
-
-    def _is_predicted(self, candidate: Candidate, joint: int, share: float) -> bool:
-        """Whether trees predict the residual of a joint, or the layer leaves as much less of the held-out mismatch."""
-        by_trees = _is_predictable(candidate, joint, self.predictable)
-        return by_trees or bool(candidate.left_by_layer[joint] < (1.0 - self.predictable) * share)
+        kept = 1.0 - self.predictable
+        return {
+            j: s
+            for j, s in shares.items()
+            if _trees_predict(candidate, j, self.predictable) or candidate.left_by_layer[j] < kept * s
+        }
 
 
 def _undecided(candidate: Candidate, most: Shares) -> set[int]:
@@ -201,7 +201,7 @@ def _too_little(joint: str, share: float, least: float) -> str:
     return f"{explains}, beside too much that motion predicts and no effect explains"
 
 
-def _is_predictable(candidate: Candidate, joint: int, least: float) -> bool:
+def _trees_predict(candidate: Candidate, joint: int, least: float) -> bool:
     """Whether a share of a joint's residual can be predicted: held out, or in every second part of the fit."""
     problem, seed = candidate.problem, candidate.seed
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)

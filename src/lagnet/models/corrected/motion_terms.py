@@ -19,8 +19,9 @@ from lagnet.effects.motion import Motion
 from lagnet.effects.rest import blurred_sign, resting
 from lagnet.types import Trajectory
 
-POSITION_WAVES = range(1, 9)  # half waves of a torque over the range of a joint
-PATH_WAVES = range(1, 4)  # and of its friction
+HALF_WAVES = {"position": 8, "viscous_path": 3, "dry_path": 3}  # over the range of a joint, of its torque and friction
+OVER_POSITION = {f"{what}_{k}": (what, k) for what, most in HALF_WAVES.items() for k in range(1, most + 1)}
+"""Kinds of functions that change over the range of a joint: what the wave is multiplied with, and its half waves."""
 
 
 @dataclass(frozen=True)
@@ -132,21 +133,16 @@ def wave(order: int, position: np.ndarray, centre: float, scale: float) -> np.nd
     return np.cos(order * np.pi / 2.0 * (np.clip((position - centre) / scale, -1.0, 1.0) + 1.0))
 
 
-def is_over_position(kind: str) -> bool:
-    """Whether functions of a kind change over the range of the joint."""
-    return kind.startswith("position_") or is_friction_over_position(kind)
-
-
-def is_friction_over_position(kind: str) -> bool:
-    """Whether functions of a kind are friction that changes over the range of the joint."""
-    return kind.startswith(("viscous_path_", "dry_path_"))
-
-
 def _along(order: int, times: Callable[[Seen], np.ndarray]) -> Callable[[Seen], np.ndarray]:
     """A wave over the joint's position times a function of its motion."""
     return lambda x: wave(order, x.motion.q[:, x.joint], x.centre, x.scale) * times(x)
 
 
+ALONG: dict[str, Callable[[Seen], np.ndarray]] = {
+    "position": lambda x: np.ones(len(x.motion.q)),
+    "viscous_path": lambda x: x.speed,
+    "dry_path": lambda x: x.direction(x.joint),
+}
 BENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "early_bend": lambda u: np.tanh(u / 0.1),
     "late_bend": lambda u: np.tanh(u / 0.3),
@@ -181,9 +177,7 @@ KINDS: dict[str, Callable[[Seen], np.ndarray]] = {
     "bristle": _bristle,
     "lag": _lag,
     "spring": lambda x: x.motion.q[:, x.joint],
-    **{f"position_{k}": _along(k, lambda x: np.ones(len(x.motion.q))) for k in POSITION_WAVES},
-    **{f"viscous_path_{k}": _along(k, lambda x: x.speed) for k in PATH_WAVES},
-    **{f"dry_path_{k}": _along(k, lambda x: x.direction(x.joint)) for k in PATH_WAVES},
+    **{kind: _along(order, ALONG[what]) for kind, (what, order) in OVER_POSITION.items()},
     "cross_viscous": lambda x: x.motion.v[:, x.partner],
     "cross_inertia": lambda x: x.motion.a[:, x.partner],
     "cross_dry_sum": lambda x: _relative(x, 1.0),
