@@ -13,7 +13,7 @@ from lagnet.effects.effect import Effect, Parameter
 from marked_regions import DOCS, ROOT, replaced, write_or_check
 
 COMMAND = "python docs/make_catalogue.py"
-PLACES = {"body": "on bodies", "torque": "at a joint", "signal": "in the recorded signal"}
+PLACES = {"body": "on bodies", "transmission": "at a joint", "torque": "at a joint", "signal": "in the recorded signal"}
 
 
 def cell(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagnet.effects.catalogue import CATALOGUE, effect_named
-from lagnet.effects.effect import Effect
+from lagnet.effects.effect import STAGES, Effect
 from lagnet.effects.motion import Motion
 from lagnet.errors import EffectError
 from lagnet.models.corrected.model import NamedEffect, torque_with
@@ -83,7 +84,7 @@ def test_says_what_it_is(effect: Effect) -> None:
         assert text.strip()
     assert effect.title[0].isupper()
     assert re.fullmatch(r"[a-z]+\d{4}", effect.source)
-    assert effect.stage in ("body", "torque", "signal")
+    assert effect.stage in STAGES
 
 
 @every_effect
@@ -208,6 +209,7 @@ def test_says_whether_it_follows_the_load_of_its_joint(effect: Effect, ur5, swee
         return
     rng, joint = np.random.default_rng(3), pick_joint(effect, ur5.n_dof, 2)
     motion, shapes = shapes_of(effect, sweep(ur5, 3).motion, joint)
+    motion = replace(motion, recorded=None)
     values = effect.values(coefficients_inside(effect, shapes[0], 0.3, rng), shapes[0])
     other = np.arange(motion.n_dof) != joint
     kick = rng.normal(0.0, motion.load.std(), motion.load.shape)
@@ -273,7 +275,7 @@ def test_effects_of_one_stage_add_up(ur5, sweep, shapes_of, seed: int) -> None:
         if shapes:
             values = effect.values(coefficients_inside(effect, shapes[0], 0.01, rng), shapes[0])
             named.append(NamedEffect(effect.name, joint, values))
-    for stage in ("body", "torque"):
+    for stage in ("body", "transmission", "torque"):
         group = [e for e in named if effect_named(e.effect).stage == stage and e.effect not in WITH_BODIES]
         together = torque_with(motion, group) - motion.load
         apart = sum((torque_with(motion, [e]) - motion.load for e in group), np.zeros_like(motion.load))

@@ -22,10 +22,10 @@ import numpy as np
 from lagnet.effects.motion import Motion
 
 Values = dict[str, float]
-Stage = Literal["body", "torque", "signal"]
-STAGES: tuple[Stage, ...] = ("body", "torque", "signal")
-"""When an effect acts: on the bodies, whose torque is the load that transmissions feel; then at the joint; then on the
-recorded signal, which holds all that came before."""
+Stage = Literal["body", "transmission", "torque", "signal"]
+STAGES: tuple[Stage, ...] = ("body", "transmission", "torque", "signal")
+"""When an effect acts: on the bodies, whose torque is the load that transmissions feel and give way to; then at the
+joint; then on the recorded signal, which holds all that came before."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.models.corrected.shifted_bodies import shifted_bodies
 from lagnet.models.corrected.shifted_weights import OFFSET, shifted_weight
 from lagnet.models.corrected.tilted_bodies import TILT, tilted_weight
 
@@ -48,25 +49,37 @@ class Superposition:
                 load = _plus(load, added)
             if stage == "body":
                 self._products = _products(motion, self._effects)
-                load = load + self._products
+                self._carried = load = load + self._products
+            if stage == "transmission":
+                load = load + shifted_bodies(motion.with_load(before), self._effects)
+                self._transmitted = load - self._carried
         self.total = load
 
     def change(self, n: int, other: NamedEffect) -> Change:
         """By how much the torque changes if effect n becomes another of the same law and joint."""
-        own = _minus(other.added_at(self._motion.with_load(self._parts[n].seen)), self._parts[n].added)
-        return self._all_of(n, own, self._products_change(n, other))
+        own: Change = {}  # a transmission's is computed with its products
+        if not self._is_of(n, "transmission"):
+            own = _minus(other.added_at(self._motion.with_load(self._parts[n].seen)), self._parts[n].added)
+        return self._all_of(n, own, self._products_change(n, other), (other,))
 
     def without(self, n: int) -> Change:
         """By how much the torque changes if effect n goes."""
-        others = (*self._effects[:n], *self._effects[n + 1 :])
-        products = _products(self._motion, others) - self._products if self._is_of(n, "body") else 0.0
-        return self._all_of(n, _minus({}, self._parts[n].added), products)
+        products = _products(self._motion, self._with(n, ())) - self._products if self._is_of(n, "body") else 0.0
+        own = {} if self._is_of(n, "transmission") else _minus({}, self._parts[n].added)
+        return self._all_of(n, own, products, ())
 
-    def _all_of(self, n: int, change: Change, products: np.ndarray | float) -> Change:
+    def _with(self, n: int, instead: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
+        return (*self._effects[:n], *instead, *self._effects[n + 1 :])
+
+    def _all_of(self, n: int, change: Change, products: np.ndarray | float, instead: Sequence[NamedEffect]) -> Change:
         """A change of effect n's own torque, with that of its products and of all effects that see it."""
-        if self._is_of(n, "body"):
+        of_bodies, of_transmissions = self._is_of(n, "body"), self._is_of(n, "transmission")
+        if of_bodies:
             change = _minus(change, {} if np.ndim(products) == 0 else _by_joint(-np.asarray(products)))
-            for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the bodies alone
+        if of_transmissions or (of_bodies and self._of("transmission")):
+            change = self._transmission_change(self._with(n, instead), change)
+        if of_bodies or of_transmissions:
+            for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the links alone
                 change = _minus(change, {j: -x for j, x in after.items()})
         for m in self._of("signal"):
             if m > n or not self._is_of(n, "signal"):
@@ -80,7 +93,14 @@ class Superposition:
         if effect_named(other.effect).is_body:
             others = [e for e in self._effects if e.effect in (TILT, OFFSET)]
             return _products(self._motion, [other, *others]) - _products(self._motion, [self._effects[n], *others])
-        return _products(self._motion, (*self._effects[:n], other, *self._effects[n + 1 :])) - self._products
+        return _products(self._motion, self._with(n, (other,))) - self._products
+
+    def _transmission_change(self, effects: Sequence[NamedEffect], change: Change) -> Change:
+        """A change of the bodies' torque, with what transmissions add to it under that load and with other effects."""
+        felt = self._motion.with_load(_plus(self._carried, change))
+        giving = [e for e in effects if effect_named(e.effect).stage == "transmission"]
+        now = sum((e.added(felt) for e in giving), np.zeros_like(felt.load)) + shifted_bodies(felt, effects)
+        return _minus(change, _by_joint(self._transmitted - now))
 
     def _is_of(self, n: int, stage: Stage) -> bool:
         return effect_named(self._effects[n].effect).stage == stage

@@ -13,7 +13,9 @@ from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
+from lagnet.effects.transmission import Transmission
 from lagnet.models.corrected.named_effects import NamedEffect, load_before
+from lagnet.models.corrected.shifted_bodies import transmission_columns
 from lagnet.models.corrected.shifted_weights import OFFSET, secant_columns
 from lagnet.models.corrected.tilted_bodies import BODIES, body_in_turned_field, tilt_columns
 
@@ -214,7 +216,10 @@ class Library:
 
     def _columns(self, index: int, motion: Motion, problem: Problem) -> np.ndarray:
         h, known = self.hypotheses[index], problem.known
-        columns = h.law.columns(as_seen(motion, known, h.law), h.joint, dict(h.shape))
+        seen = as_seen(motion, known, h.law)
+        if known and isinstance(h.law, Transmission) and h.joint is not None:
+            return transmission_columns(seen, h.law, h.joint, known, dict(h.shape))
+        columns = h.law.columns(seen, h.joint, dict(h.shape))
         if known and isinstance(h.law, GravityTilt):
             return tilt_columns(motion, h.law, dict(h.shape), known, columns)
         if known and h.effect == OFFSET and h.joint is not None:

@@ -5,12 +5,12 @@ from typing import final
 
 import numpy as np
 
-from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.effect import Parameter, Values
 from lagnet.effects.excitation import needs_reversals
 from lagnet.effects.gap import lag_in_gap
 from lagnet.effects.motion import Motion
-from lagnet.effects.shifted import shifted_torque
 from lagnet.effects.slopes import first_order, per_acceleration
+from lagnet.effects.transmission import Shift, Transmission
 
 GAPS = tuple(float(h) for h in np.geomspace(5e-4, 0.03, 8))  # [rad] half gaps tried: transmissions of arms
 NEAR = (0.6, 1.6)  # a gap between two that are tried shows as a flight of another size, within these
@@ -18,7 +18,7 @@ LIGHT = 1e-3  # of the joint's usual inertia: below it, a model's inertia is no 
 
 
 @final
-class Backlash(Effect):
+class Backlash(Transmission):
     """The link lies against the flank that its load presses it to, and flies freely across the gap when that changes.
 
     r = τ(q − x, v − ẋ, a − ẍ) − τ(q, v, a) with x = h sign(τ) on a flank and ẍ = τ / M in between, τ being the load
@@ -30,9 +30,6 @@ class Backlash(Effect):
     title = "Backlash"
     formula = "τ(q − x) − τ(q), x = h sign(τ), ẍ = τ/M between"
     parameters = (Parameter("h", "h", "rad", "half the gap between motor and link", lower=0.0, upper=0.2),)
-    reaches_all = True
-    instantaneous = False
-    stage = "body"
     shown_by = "loads that change sign often, and reversals"
     confused_with = ("stribeck_friction", "presliding_hysteresis", "time_delay")
     source = "swevers2007"
@@ -50,10 +47,9 @@ class Backlash(Effect):
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"h": float(shape["h"])}
 
-    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        if not values["h"] > 0.0:
-            return np.zeros_like(motion.load)
-        return shifted_torque(motion, joint, *(-x for x in _lag(motion, joint, values["h"])))
+    def shift(self, motion: Motion, joint: int, values: Mapping[str, float]) -> Shift:
+        lag, speed, acceleration = _lag(motion, joint, values["h"])
+        return -lag, -speed, -acceleration
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         load = motion.load[:, joint]
@@ -62,8 +58,11 @@ class Backlash(Effect):
         return needs_reversals(motion, joint)
 
 
-def _lag(motion: Motion, joint: int, half_gap: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _lag(motion: Motion, joint: int, half_gap: float) -> Shift:
     """x, ẋ and ẍ of the link in its gap, each of shape (n,)."""
+    if not half_gap > 0.0:
+        rest = np.zeros_like(motion.time)
+        return rest, rest, rest
     lag = lag_in_gap(motion.time, motion.load[:, joint] / _inertia(motion, joint), half_gap)
     return lag, np.gradient(lag, motion.time), _second(lag, motion.time)
 

@@ -5,25 +5,23 @@ from typing import final
 
 import numpy as np
 
-from lagnet.effects.effect import Effect, Parameter, Values
+from lagnet.effects.effect import Parameter, Values
 from lagnet.effects.excitation import needs_motion
 from lagnet.effects.motion import Motion
-from lagnet.effects.shifted import carried_torque, shifted_torque
+from lagnet.effects.shifted import carried_torque
 from lagnet.effects.slopes import first_order
+from lagnet.effects.transmission import Shift, Transmission
 
 
 @final
-class JointElasticity(Effect):
+class JointElasticity(Transmission):
     """The link trails the motor by τ/K, and swings: r = τ(q_l, v_l, a_l) − τ(q, v, a) with q_l = q − τ/K."""
 
     name = "joint_elasticity"
     title = "Joint elasticity"
     formula = "τ(q − τ/K) − τ(q)"
     parameters = (Parameter("K", "K", "N m/rad", "stiffness of the transmission", lower=1e-3),)
-    reaches_all = True
     uses_measured_torque = True
-    instantaneous = False
-    stage = "body"
     shown_by = "quick changes of load and acceleration at the joint"
     confused_with = ("encoder_offset", "link_inertia", "rotor_inertia", "time_delay")
     absent = ()
@@ -48,14 +46,14 @@ class JointElasticity(Effect):
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(1), np.full(1, 1e3)
 
-    def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
-        return shifted_torque(motion, joint, *_lag(motion, carried_torque(motion, joint) / values["K"]))
+    def shift(self, motion: Motion, joint: int, values: Mapping[str, float]) -> Shift:
+        return _lag(motion, carried_torque(motion, joint) / values["K"])
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_motion(motion, joint)
 
 
-def _lag(motion: Motion, bend: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _lag(motion: Motion, bend: np.ndarray) -> Shift:
     """Position, speed and acceleration of the link less those of its motor, which it trails by `bend`, shape (n,)."""
     speed = np.gradient(bend, motion.time)
     return -bend, -speed, -np.gradient(speed, motion.time)

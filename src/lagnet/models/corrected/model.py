@@ -29,6 +29,7 @@ from lagnet.types import (
     is_robot_model,
 )
 
+OF_LINKS = ("body", "transmission")  # stages of effects on the links themselves
 OF_BODIES = {
     "gravity",
     "gravity_regressor",
@@ -234,7 +235,7 @@ class CorrectedModel:
             tau_nominal = nominal.inverse_dynamics(q, v, a) - nominal.residual_torque(q, v, a)
         else:
             tau_nominal = part(q, v, a)
-        bodies = [e for e in self.acting if effect_named(e.effect).stage == "body" and e.interval is None]
+        bodies = [e for e in self.acting if effect_named(e.effect).stage in OF_LINKS and e.interval is None]
         named = torque_with(self._motion(UNORDERED * np.arange(len(q)), q, v, a, tau_nominal), bodies)
         if self.layer is None:
             return named

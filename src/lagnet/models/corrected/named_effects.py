@@ -11,6 +11,7 @@ from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.presence import presence
+from lagnet.models.corrected.shifted_bodies import shifted_bodies
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.models.corrected.tilted_bodies import tilted_weight
 from lagnet.types import Trajectory
@@ -107,6 +108,8 @@ def torque_with(motion: Motion, effects: Sequence[NamedEffect]) -> Trajectory:
             tau = tau + effect.added(motion.with_load(tau) if stage == "signal" else before)
         if stage == "body":
             tau = tau + tilted_weight(motion, effects) + shifted_weight(motion, effects)
+        if stage == "transmission":
+            tau = tau + shifted_bodies(before, effects)
     return tau
 
 

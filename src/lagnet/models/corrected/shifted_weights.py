@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,15 +28,18 @@ def shifted_weight(motion: Motion, effects: Sequence[Named]) -> np.ndarray | flo
 
 def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
     """∂τ/∂q_j of tilts, payloads and link changes along a motion, shape (n, dof) [N m/rad]; 0 without any."""
-    tilts = [e for e in effects if e.effect == TILT]
-    carried = [e for e in effects if e.joint is None or e.joint >= joint]  # a joint turns none of the links before it
-    bodies = [e for e in carried if e.effect in BODIES]
+    tilts, bodies = [e for e in effects if e.effect == TILT], moved_bodies(joint, effects)
     if not tilts and not bodies:
         return 0.0
     change = change_of_gravity(motion, tilts)
     ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
     more, less = (carried_torque(p, bodies, change) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
     return (more - less) / (2.0 * STEP)
+
+
+def moved_bodies(joint: int, effects: Sequence[Named]) -> list[Named]:
+    """Payloads and link changes behind a joint, which turns none of the links before it."""
+    return [e for e in effects if e.effect in BODIES and (e.joint is None or e.joint >= joint)]
 
 
 def _turned(motion: Motion) -> np.ndarray:
@@ -60,7 +63,12 @@ def secant_columns(motion: Motion, joint: int, known: Sequence[Named], columns: 
 
 
 def _shifted(motion: Motion, joint: int, steps: int) -> Motion:
-    """The motion with one joint elsewhere, and a store of its own."""
-    q = motion.q.copy()
-    q[:, joint] += steps * STEP
-    return replace(motion, q=q, cache={})
+    return moved(motion, joint, {"q": np.full(motion.time.size, steps * STEP)})
+
+
+def moved(motion: Motion, joint: int, changes: Mapping[str, np.ndarray]) -> Motion:
+    """The motion with other q, v or a of one joint, and a store of its own."""
+    signals = {name: getattr(motion, name).copy() for name in changes}
+    for name, change in changes.items():
+        signals[name][:, joint] += change
+    return replace(motion, **signals, cache={})

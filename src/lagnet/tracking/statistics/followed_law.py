@@ -11,13 +11,14 @@ SERVO_FRICTION = ("friction", "drag")  # how the names of those effects of a ser
 
 
 def stage_of(effect: str) -> str:
-    """ "torque" for friction and the like, "body" for bodies, else where a servo or signal has it.
+    """ "torque" for friction and the like, "body" for bodies and transmissions, else where a servo or signal has it.
 
     Raises:
         EffectError: neither catalogue has such a name.
     """
     if effect in CATALOGUE or effect not in SERVO_CATALOGUE:
-        return effect_named(effect).stage
+        stage = effect_named(effect).stage
+        return "body" if stage == "transmission" else stage
     return "torque" if effect.endswith(SERVO_FRICTION) else "signal"
 
 

@@ -1,0 +1,75 @@
+"""τ(q + dq, v + dv, a + da) − τ(q, v, a) of a tilted base and of changed bodies alone: what flexible joints and gaps
+have only together with these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from lagnet.effects.catalogue import effect_named
+from lagnet.effects.motion import Motion
+from lagnet.effects.transmission import Transmission
+from lagnet.models.corrected.presence import presence
+from lagnet.models.corrected.shifted_weights import moved, moved_bodies, weight_slope
+from lagnet.models.corrected.tilted_bodies import TILT, TILT_LAW, Named, carried_torque, change_of_gravity
+from lagnet.rigid_body.robot import Robot
+
+
+def shifted_bodies(motion: Motion, effects: Sequence[Named]) -> np.ndarray | float:
+    """Torque of tilt, payloads and link changes that transmissions add, shape (n, dof) [N m]; 0 without both.
+
+    Args:
+        motion: under the load that transmissions feel.
+        effects: all that act.
+    """
+    out: np.ndarray | float = 0.0
+    for effect in effects:
+        law, joint = effect_named(effect.effect), effect.joint
+        if isinstance(law, Transmission) and joint is not None:
+            shift = dict(zip("qva", law.shift(motion, joint, effect.values), strict=True))
+            added = _between(moved(motion, joint, shift), motion, joint, effects)
+            out = out + np.asarray(presence(motion, effect))[..., None] * added
+    return out
+
+
+def _between(there: Motion, here: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
+    """Torque of tilts, payloads and link changes in one motion of a joint less that in another; 0 without any."""
+    tilts, bodies = [e for e in effects if e.effect == TILT], moved_bodies(joint, effects)
+    change, out = change_of_gravity(here, tilts), 0.0
+    if bodies:
+        out = out + carried_torque(there, bodies, change) - carried_torque(here, bodies, change)
+    if tilts:
+        out = out + _held(there, change) - TILT_LAW.gravity_regressor(here) @ change
+    return out
+
+
+def _held(motion: Motion, gravity: np.ndarray) -> np.ndarray:
+    """Holding torque of the nominal bodies in a field of gravity, shape (n, dof) [N m]."""
+    if isinstance(motion.model, Robot):  # a third of the time
+        return motion.model.with_gravity(gravity).gravity_torque(motion.q)
+    return TILT_LAW.gravity_regressor(motion) @ gravity
+
+
+def transmission_columns(
+    motion: Motion, law: Transmission, joint: int, known: Sequence[Named], shape: Mapping[str, float]
+) -> np.ndarray:
+    """Torque per unit of a transmission's one coefficient beside tilts and bodies, shape (n, dof, 1)."""
+    shift = law.shift(motion, joint, law.values(np.ones(1), shape))
+    slopes = _slopes(motion, joint, known)
+    added = sum((d[:, None] * slope for d, slope in zip(shift, slopes, strict=True)), np.zeros_like(motion.load))
+    return law.columns(motion, joint, shape) + added[..., None]
+
+
+def _slopes(motion: Motion, joint: int, known: Sequence[Named]) -> tuple[np.ndarray, ...]:
+    """∂τ/∂q_j, ∂τ/∂v_j and ∂τ/∂a_j of tilts, payloads and link changes, exact in speed and acceleration."""
+
+    def make() -> tuple[np.ndarray, ...]:
+        bodies, unit = moved_bodies(joint, known), np.ones_like(motion.time)
+        change = change_of_gravity(motion, [e for e in known if e.effect == TILT])
+        changes = ({"v": unit}, {"v": -unit}, {"a": unit}, {"a": -unit})
+        faster, slower, more, less = (carried_torque(moved(motion, joint, c), bodies, change) for c in changes)
+        return np.asarray(weight_slope(motion, joint, known)), (faster - slower) / 2.0, (more - less) / 2.0
+
+    key = tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
+    return motion.remembered(("slopes of bodies", joint, key), make)
