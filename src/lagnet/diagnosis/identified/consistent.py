@@ -41,16 +41,16 @@ def consistent_unknowns(
     """
     modelled, free = np.asarray(modelled, dtype=float), choice.ridge.x
     folds, found = block_folds(design), []
-    limit = WORSE * _errors(design, sums, free)
+    limit = WORSE * squared_errors(design, sums, free)
     for weight in NATS:
         try:
             x, bodies = _constrained(design, sums, choice, modelled, weight)
-            if np.any(_errors(design, sums, x) > limit):
+            if np.any(squared_errors(design, sums, x) > limit):
                 continue
             parts = [_constrained(design, f.fitted, choice, modelled, weight)[0] for f in folds]
         except np.linalg.LinAlgError:
             continue
-        unseen = sum(_errors(design, f.held_out, part) for f, part in zip(folds, parts, strict=True))
+        unseen = sum(squared_errors(design, f.held_out, part) for f, part in zip(folds, parts, strict=True))
         found.append((x, bodies, np.maximum(unseen, 1e-300)))
     if not found:
         return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
@@ -59,7 +59,8 @@ def consistent_unknowns(
     return x, bodies
 
 
-def _errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:
+def squared_errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:
+    """Σ r² of each joint over the fitted rows for scaled unknowns x, shape (dof,)."""
     return np.array([s.error(x[j.unknowns]) for s, j in zip(sums, design.joints, strict=True)])
 
 

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.identified.consistent import consistent_unknowns
-from lagnet.diagnosis.identified.design import BODY, Design, FitSegment, make_design, usual_rest
+from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
 from lagnet.diagnosis.identified.dictionary import TermGroup, lag_groups, term_groups
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice, choose
+from lagnet.diagnosis.identified.real_inertia import (
+    columns_of,
+    layer_of,
+    positive_definite,
+    rotors_of,
+    without_negative_rotors,
+)
 from lagnet.diagnosis.identified.rest import friction_at_rest
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
-from lagnet.models.corrected.changed_bodies import inertial_parameters_of, named_body_change
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
-from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
+from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
-from lagnet.recordings.sampling import spread_rows
 
 NOTHING = 1e-7  # of a joint's torque: a smaller term is zero
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
@@ -64,7 +68,7 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
     segments = [fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
     first = make_design(problem, segments, [g for g in groups if not g.needs_load and not g.optional])
     ridge = fit_ridge(first, joint_equations(first), inefficiency=10.0, steps=15)
-    segments = [_with_load(s, _layer(first, ridge.x, rest)) for s in segments]
+    segments = [_with_load(s, layer_of(first, ridge.x, rest)) for s in segments]
     without_bodies = [replace(s, regressor=None) for s in segments]
     for pieces in (segments, without_bodies):  # the second where changed bodies harm some joint
         found = _fitted(problem, effects, pieces, groups, rest)
@@ -80,23 +84,15 @@ def _fitted(
     late: set[int] = set()
     while True:
         design = make_design(problem, pieces, [*groups, *lag_groups(problem, late)])
-        design, choice = _chosen(design.without(_rotors(design, late)))
+        design, choice = _chosen(design.without(rotors_of(design, late)))
         if choice is None:
             return None
-        negative = {t.joint for i, t in _columns_of(design, "rotor") if choice.ridge.x[i] < 0}
-        layer, design, choice, rotor = _positive_definite(problem, effects, design, choice, rest)
+        negative = {t.joint for i, t in columns_of(design, "rotor") if choice.ridge.x[i] < 0}
+        layer, design, choice, rotor = positive_definite(problem, effects, design, choice, rest)
         if rotor is None:
+            layer, design, choice = without_negative_rotors(problem, effects, layer, design, choice)
             return Identified(replace(layer, rest=friction_at_rest(problem, pieces, layer)), design, choice)
         late |= {rotor} | negative  # where one is no rotor, no negative one is
-
-
-def _columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
-    """Index of each unknown that weights a function of some kind, and the function."""
-    return [(design.n_bodies + i, t) for i, t in enumerate(design.terms) if t.kind == kind]
-
-
-def _rotors(design: Design, joints: Collection[int]) -> np.ndarray:
-    return np.array([i for i, t in _columns_of(design, "rotor") if t.joint in joints], dtype=int)
 
 
 def _chosen(design: Design) -> tuple[Design, Choice | None]:
@@ -106,7 +102,7 @@ def _chosen(design: Design) -> tuple[Design, Choice | None]:
     """
     while (choice := choose(design)) is not None:
         weights = design.unscaled(choice.ridge.x)
-        impossible = [i for i, _ in _columns_of(design, "load") if abs(weights[i]) > 1.0]
+        impossible = [i for i, _ in columns_of(design, "load") if abs(weights[i]) > 1.0]
         if not impossible:
             break
         design = design.without(np.array(impossible))
@@ -126,56 +122,6 @@ def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLaye
     return bool(np.any(after > HARMFUL * before + NEGLIGIBLE**2 * count * problem.scale**2))
 
 
-def _positive_definite(
-    problem: Problem, effects: Sequence[NamedEffect], design: Design, choice: Choice, rest: Rest
-) -> tuple[IdentifiedLayer, Design, Choice, int | None]:
-    """The layer without couplings that would make the mass matrix indefinite at some pose of the motion.
-
-    Where a rotor does, its joint comes back as well, and the layer is not settled.
-    """
-    model = CorrectedModel(problem.nominal, tuple(effects), problem.slow, straight=problem.straight)
-    q = np.concatenate([p.q[p.keep] for p in problem.fit])
-    q = q[spread_rows(len(q), POSES)]
-    while True:
-        x = choice.ridge.x
-        layer = _layer(design, x, rest)
-        if design.n_bodies:
-            x, bodies = consistent_unknowns(design, joint_equations(design), choice, _modelled(problem, effects))
-            layer = replace(_layer(design, x, rest), bodies=bodies)
-        before, after = (m.mass_matrix(q) for m in (model, replace(model, identified=layer)))
-        worst = int(np.argmin(np.linalg.eigvalsh(after)[:, 0]))
-        least, direction = (part[..., 0] for part in np.linalg.eigh(after[worst]))
-        floor = min(float(np.linalg.eigvalsh(before)[:, 0].min()), 0.0) - INDEFINITE * float(problem.scale.max())
-        negative = _most_negative(design, design.unscaled(x), direction)
-        if least >= floor or negative is None:
-            return layer, design, choice, None
-        term = design.terms[negative - design.n_bodies]
-        if term.kind == "rotor":
-            return layer, design, choice, term.joint
-        design = design.without(np.array([negative]))
-        choice = replace(
-            choice, ridge=fit_ridge(design, joint_equations(design), choice.inefficiency, excluded=choice.excluded)
-        )
-
-
-def _most_negative(design: Design, x: np.ndarray, direction: np.ndarray) -> int | None:
-    """argmin over rotors and couplings of their share of vᵀM v in a direction v; None where none is negative."""
-    inertia = np.zeros(len(design.terms))
-    for i, term in enumerate(design.terms):
-        if term.kind in INERTIA:
-            share = (
-                direction[term.joint] ** 2 if term.other is None else 2 * direction[term.joint] * direction[term.other]
-            )
-            inertia[i] = share * x[design.n_bodies + i]
-    worst = int(np.argmin(inertia))
-    return design.n_bodies + worst if inertia[worst] < 0 else None
-
-
-def _modelled(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
-    """Ten parameters of each link with named changes, shape (dof, 10)."""
-    return inertial_parameters_of(problem.nominal) + named_body_change(problem.n_dof, effects)
-
-
 def fit_segment(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]) -> FitSegment:
     """A segment with its regressor, under gravity as named, and the residual of the named model."""
     motion = replace(piece.motion(problem), recorded=None)  # a prediction does not use recorded torque
@@ -192,11 +138,3 @@ def _with_load(segment: FitSegment, layer: IdentifiedLayer) -> FitSegment:
         return segment
     load = segment.load + segment.regressor @ layer.bodies.ravel()
     return FitSegment(segment.piece, segment.regressor, load, segment.target)
-
-
-def _layer(design: Design, unknowns: np.ndarray, rest: Rest) -> IdentifiedLayer:
-    x = design.unscaled(unknowns)
-    bodies = x[: design.n_bodies].reshape(-1, BODY) if design.n_bodies else None
-    weights = x[design.n_bodies :]
-    used = np.flatnonzero(np.abs(unknowns[design.n_bodies :]) > NOTHING)
-    return IdentifiedLayer(bodies, tuple(design.terms[i] for i in used), weights[used], rest)
