@@ -1,4 +1,4 @@
-"""argmin_π (π − π̂)ᵀG(π − π̂) + w d(π, π₀) over physically consistent π: the real body nearest to a fitted one."""
+"""argmin_π (π − π̂)ᵀG(π − π̂) + w d(π, π₀) over physically consistent π: the real bodies nearest to fitted ones."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WITHIN = float(chi2.ppf(0.95, 10))  # squared error [noise variances] by which d
 
 
 def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """The likeliest real body whose torque is as near to that of the wanted parameters as any's, shape (10,).
+    """The likeliest real body whose torque is as near to that of the wanted parameters as any's, or several together.
 
     Of the bodies that data distinguish from the nearest one no better than chance, the closest to the model is taken:
     small moments that noise leaves open would else ask for masses beyond reason. Of wanted parameters that a body can
@@ -32,27 +32,38 @@ def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.n
     minimum in reach, negative principal values are cut off.
 
     Args:
-        gram: shape (10, 10), squared error per change of parameters, in variances of the noise.
-        wanted: shape (10,), parameters of the fit.
-        base: shape (10,), of the modelled body that was changed; zeros for a payload.
+        gram: shape (10 k, 10 k), squared error per change of parameters, in variances of the noise.
+        wanted: shape (10,) or (k, 10), parameters of the fit.
+        base: the same shape, of the modelled bodies that were changed; zeros for a payload.
+
+    Returns:
+        Parameters in the shape of the wanted ones.
     """
-    moment, prior = gram @ wanted, _prior(base, wanted)
-    least = CONSISTENCY * max(float(wanted @ moment), 1e-12)
+    prior = np.reshape(
+        [_prior(*pair) for pair in zip(base.reshape(-1, 10), wanted.reshape(-1, 10), strict=True)], wanted.shape
+    )
+    moment = gram @ wanted.ravel()
+    least = CONSISTENCY * max(float(wanted.ravel() @ moment), 1e-12)
     try:
         nearest = fit_consistent(gram, moment, prior, weight=least)
-        if is_physically_consistent(wanted):
+        if np.all(is_physically_consistent(wanted)):
             return nearest
         bound = _lost(gram, nearest - wanted) + WITHIN
         likely = (fit_consistent(gram, moment, prior, weight=least * more) for more in WEIGHTS)
         return next((body for body in likely if _lost(gram, body - wanted) <= bound), nearest)
     except np.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
-        least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
-        return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
+        return np.reshape([_cut_off(body) for body in wanted.reshape(-1, 10)], wanted.shape)
+
+
+def _cut_off(wanted: np.ndarray) -> np.ndarray:
+    """The body without negative principal values, shape (10,)."""
+    values, vectors = np.linalg.eigh(pseudo_inertia(wanted))
+    least = CONSISTENCY * max(float(np.max(np.abs(values))), 1e-9)
+    return from_pseudo_inertia((vectors * np.maximum(values, least)) @ vectors.T)
 
 
 def _lost(gram: np.ndarray, change: np.ndarray) -> float:
-    return float(change @ gram @ change)
+    return float(change.ravel() @ gram @ change.ravel())
 
 
 def body_before(problem: Problem, effect: NamedEffect) -> np.ndarray:

@@ -52,10 +52,14 @@ def _tangent(work: GaussNewton, x: np.ndarray) -> _Tangent:
 def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
     """Replaces bodies that are not consistent or not determined by the nearest consistent ones, and refits all else.
 
-    Making one body real moves the others, so each is given a second chance; from then on it is held. The others follow
-    along the tangent, and by the exact laws at the end.
+    Where several are named they are made real together: bodies next to each other share masses, and one after the other
+    would hold what the next one needs. Making one real moves all else, so it is given a second chance; from then on it
+    is held. The others follow along the tangent, and by the exact laws at the end.
     """
-    if not _bodies(work):
+    bodies = _bodies(work)
+    if len(bodies) > 1 and not all(_is_consistent(work, x, n) for n in bodies):
+        return _all_real(work, x, bodies)
+    if not bodies:
         return x
     tried, held = set[int](), np.zeros(x.size, dtype=bool)
     while True:
@@ -72,6 +76,15 @@ def with_physical_bodies(work: GaussNewton, x: np.ndarray) -> np.ndarray:
         if not moved:
             return x
         x = work.descend(x, ~(held | fixed))
+
+
+def _all_real(work: GaussNewton, x: np.ndarray, bodies: list[int]) -> np.ndarray:
+    """The nearest consistent bodies, all of them together."""
+    own = np.concatenate([_own(work, x, n) for n in bodies])
+    base = np.array([body_before(work.problem, work.slots.effects[n]) for n in bodies])
+    x, information = x.copy(), _tangent(work, x).told(own)[0]
+    x[own] = (nearest_body(information, base + x[own].reshape(base.shape), base) - base).ravel()
+    return work.descend(x, ~np.isin(np.arange(x.size), own))
 
 
 def _bodies(work: GaussNewton) -> list[int]:
