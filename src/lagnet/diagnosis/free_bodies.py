@@ -42,11 +42,7 @@ def bodies_are_refuted(candidate: Candidate) -> bool:
     """
     if not any(effect_named(e.effect).is_body for e in candidate.effects):
         return False
-    valid = np.concatenate([p.counts for p in candidate.segments("fit")])
-    power, nominal = (
-        np.sum(candidate.residual("fit", effects) ** 2, axis=0) / np.maximum(1, valid.sum(axis=0))
-        for effects in (None, ())
-    )
+    power, nominal = (candidate.power("fit", effects) for effects in (None, ()))
     return bool(np.any(power > np.maximum(FAR * candidate.sigma**2, MOST * nominal)))
 
 

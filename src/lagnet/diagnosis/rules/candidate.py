@@ -121,6 +121,11 @@ class Candidate:
             self.residuals[key] = left_by(self.problem, self.segments(part), chosen)
         return self.residuals[key]
 
+    def power(self, part: Part, effects: Sequence[NamedEffect] | None = None) -> np.ndarray:
+        """Mean square residual of each joint over its valid samples, shape (dof,) [N² m²]; effects as in `residual`."""
+        valid = np.concatenate([p.counts for p in self.segments(part)])
+        return np.sum(self.residual(part, effects) ** 2, axis=0) / np.maximum(1, valid.sum(axis=0))
+
     def torque(self, part: Part, effect: NamedEffect) -> np.ndarray:
         """F τ_effect of one effect alone, zero where a sample is not valid, shape (n, dof) [N m]."""
         return self.residual(part, ()) - self.residual(part, (effect,))
