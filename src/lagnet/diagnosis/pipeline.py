@@ -12,6 +12,7 @@ from lagnet.diagnosis.estimation.misspecification import interval_errors, widene
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.estimation.special_case import with_special_cases
 from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
+from lagnet.diagnosis.exchanged_bodies import with_real_bodies
 from lagnet.diagnosis.free_bodies import (
     are_scaled_widely,
     beside_free_bodies,
@@ -61,11 +62,13 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     )
     first = Candidate(problem, equations, unseen, found, given.noise, given.seed)
     left = apply_rules([r for r in given.rules if not r.after_refit], first)
-    beside = None if problem.given is not None else _beside_free_links(left.candidate, given)
+    candidate, rejected = left.candidate, left.rejected
+    if problem.given is None and bodies_are_refuted(candidate):
+        candidate = with_real_bodies(candidate) or candidate
+    beside = None if problem.given is not None else _beside_free_links(candidate, given)
     if beside is not None:
         return beside
-    rejected = left.rejected
-    left = apply_rules([r for r in given.rules if r.after_refit], left.candidate)
+    left = apply_rules([r for r in given.rules if r.after_refit], candidate)
     candidate, rejected = left.candidate, (*rejected, *left.rejected)
     comparisons = _comparisons(candidate)
     ambiguous, supposed = ambiguous_causes(equations.library, comparisons, problem.limits.most_names), ()
