@@ -12,7 +12,7 @@ from lagnet.diagnosis.estimation.misspecification import interval_errors, widene
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.estimation.special_case import with_special_cases
 from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
-from lagnet.diagnosis.exchanged_bodies import with_real_bodies
+from lagnet.diagnosis.exchanged_bodies import with_links_alike, with_real_bodies
 from lagnet.diagnosis.free_bodies import (
     are_scaled_widely,
     beside_free_bodies,
@@ -114,7 +114,8 @@ def _comparisons(candidate: Candidate) -> tuple[Comparison, ...]:
     comparisons = compare_with_rivals(candidate.equations, candidate.selection)
     comparisons = with_unexcited_rivals(candidate.problem, candidate.library, candidate.selection, comparisons)
     comparisons = tie_equivalent_laws(candidate.library, comparisons, candidate.effects)
-    return tie_tilt_and_first_zero(candidate.problem, candidate.library, comparisons, candidate.effects)
+    comparisons = tie_tilt_and_first_zero(candidate.problem, candidate.library, comparisons, candidate.effects)
+    return with_links_alike(candidate, comparisons)
 
 
 def with_misspecification(state: DiagnosisState) -> DiagnosisState:

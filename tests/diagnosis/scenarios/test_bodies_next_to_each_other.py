@@ -50,3 +50,26 @@ def test_a_first_link_of_which_one_moment_shows_is_found(seed: int) -> None:
     found = told(arm, bodies)
     assert [e.effect for e in found.effects] == ["link_inertia"]
     assert at_noise(found)
+
+
+@pytest.mark.parametrize("seed", ARMS)
+def test_a_mass_on_the_axis_between_two_links_is_told_of_both(seed: int) -> None:
+    """A ball at the origin of a joint's frame turns with neither: it is of the link before the joint or behind it."""
+    arm = random_arm(5, seed=seed, kinds=("revolute",))
+    bodies = arm.inertial_parameters()
+    bodies[3] += parameters_of_body(1.5, np.zeros(3), 1e-6 * np.eye(3))
+    effect = told(arm, bodies).verdict.effects[0]
+    joints = {2: arm.joints[2], 3: arm.joints[3]}
+    assert effect.effect == "link_inertia"
+    assert effect.joint in joints.values()
+    other = joints[3] if effect.joint == joints[2] else joints[2]
+    assert f"The link behind {other}, changed in its place" in effect.explanation
+
+
+def test_a_link_that_shows_by_itself_is_told_alone() -> None:
+    arm = random_arm(5, seed=ARMS[0], kinds=("revolute",))
+    bodies = arm.inertial_parameters()
+    bodies[2] *= 1.4
+    found = told(arm, bodies)
+    assert names(found) == {("link_inertia", arm.joints[2])}
+    assert "changed in its place" not in found.verdict.effects[0].explanation

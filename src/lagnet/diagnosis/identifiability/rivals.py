@@ -25,11 +25,13 @@ class Comparison:
         index: the hypothesis.
         rivals: effect names with the log10 odds of the selected one over each, closest first.
         tied: names that the data do not distinguish from it.
+        elsewhere: joints whose link, changed in its place, the data do not distinguish from it.
     """
 
     index: int
     rivals: tuple[tuple[str, float], ...]
     tied: tuple[str, ...]
+    elsewhere: tuple[int, ...] = ()
 
     @property
     def best_rival(self) -> tuple[str | None, float | None]:

@@ -29,7 +29,14 @@ from lagnet.diagnosis.verdict.verdict import (
     Unexplained,
     Verdict,
 )
-from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS, SELDOM_MET, advice, clock_shift_words, explain
+from lagnet.diagnosis.verdict.wording import (
+    BESIDE_FREE_LINKS,
+    SELDOM_MET,
+    advice,
+    alike_words,
+    clock_shift_words,
+    explain,
+)
 from lagnet.effects.catalogue import effect_named
 from lagnet.recordings.recording import Recording
 from lagnet.types import joint_types_of
@@ -139,6 +146,7 @@ def _effect(state: DiagnosisState, n: int, comparison: Comparison, evidence: Eff
     joint = None if named.joint is None else state.problem.joints[named.joint]
     status = "tied" if comparison.tied else "named"
     words = explain(law, joint, parameters, comparison.tied, evidence)
+    words += alike_words([state.problem.joints[j] for j in comparison.elsewhere])
     words += SELDOM_MET if state.holdout_gain[comparison.index].silent else ""
     return EffectFound(law.name, joint, status, comparison.tied, parameters, evidence, words)
 

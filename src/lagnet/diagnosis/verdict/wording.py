@@ -46,6 +46,11 @@ def explain(
     return first
 
 
+def alike_words(joints: Sequence[str]) -> str:
+    """Which other links would do, as where a mass lies on the axis of the joint between two."""
+    return f" The link behind {' or '.join(joints)}, changed in its place, would explain it as well." if joints else ""
+
+
 def values(parameters: Sequence[NamedParameter]) -> str:
     """The first few parameters that the recordings determine, with their values; none of what they leave open."""
     told = [p for p in parameters if is_told(p)]
