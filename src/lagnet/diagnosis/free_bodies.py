@@ -16,6 +16,7 @@ import numpy as np
 
 from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import Identified
+from lagnet.diagnosis.identified.real_inertia import columns_of, given_to_links
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import power_of
 from lagnet.diagnosis.regression.library import of_motion_alone
@@ -32,6 +33,7 @@ from lagnet.types import InverseDynamics, RobotModel, is_robot_model
 FAR = 4.0  # times the mean square residual of free parameters, beyond which real bodies leave more than chance
 LITTLE = 0.1  # of the nominal mean square residual that free links may leave at a joint: beyond, they are not the cause
 BETTER = np.log(3.0)  # by which held-out errors of all joints together must fall: one joint's to a third
+LIKE_LINKS = ("offset", "rotor")  # functions of motion that a change of links may be as well
 MOST = 0.3  # of the nominal mean square residual that they may leave at a joint
 
 
@@ -96,13 +98,28 @@ def beside_free_bodies(problem: Problem, noise: np.ndarray, found: Identified | 
     """
     if not is_robot_model(problem.nominal):
         return None
-    if found is None or found.layer.bodies is None or not explains(problem, problem.fit, (), found.layer, noise):
+    if found is None or found.layer.bodies is None:
+        return None
+    layer = _with_all_that_links_can_have(problem, found)
+    if layer.bodies is None or not explains(problem, problem.fit, (), layer, noise):
         return None
     robot: RobotModel = problem.nominal
-    if not np.all(is_physically_consistent(robot.inertial_parameters() + found.layer.bodies)):
+    if not np.all(is_physically_consistent(robot.inertial_parameters() + layer.bodies)):
         return None
-    posed = with_nominal(problem, with_changed_bodies(robot, found.layer.bodies))
-    return replace(posed, given=problem.nominal)
+    return replace(with_nominal(problem, with_changed_bodies(robot, layer.bodies)), given=problem.nominal)
+
+
+def _with_all_that_links_can_have(problem: Problem, found: Identified) -> IdentifiedLayer:
+    """The layer without offsets and rotors that are zero within their intervals beside all links."""
+    weights = dict(zip(found.layer.terms, found.layer.weights, strict=True))
+    open_ = [
+        k
+        for kind in LIKE_LINKS
+        for k, term in columns_of(found.design, kind)
+        if term in weights and abs(weights[term]) <= found.half_width(term)
+    ]
+    unknowns = np.array(open_, dtype=int)
+    return given_to_links(problem, (), found.layer, found.design, found.choice, unknowns)[0]
 
 
 def with_changed_bodies(model: Any, change: np.ndarray) -> Any:

@@ -85,10 +85,22 @@ def without_negative_rotors(
     The inertia of a first link about its axis and that of its rotor are one number: what is drawn towards a model with
     other links would leave the difference to the rotor.
     """
-    negative = _negative_rotors(problem, effects, layer)
-    if not negative or not design.n_bodies:
+    negative = rotors_of(design, _negative_rotors(problem, effects, layer))
+    return given_to_links(problem, effects, layer, design, choice, negative)
+
+
+def given_to_links(
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    layer: IdentifiedLayer,
+    design: Design,
+    choice: Choice,
+    unknowns: np.ndarray,
+) -> tuple[IdentifiedLayer, Design, Choice]:
+    """The layer without some functions of motion; the given one where any joint's squared error grows by over 2 %."""
+    if not unknowns.size or not design.n_bodies:
         return layer, design, choice
-    fewer = design.without(rotors_of(design, negative))
+    fewer = design.without(unknowns)
     sums = joint_equations(fewer)
     ridge = fit_ridge(fewer, sums, choice.inefficiency, excluded=choice.excluded)
     other, fewer, fitted, rotor = positive_definite(problem, effects, fewer, replace(choice, ridge=ridge), layer.rest)
