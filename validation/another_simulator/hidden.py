@@ -113,7 +113,7 @@ SIZES: dict[str, Draw] = {
     "contact_force": lambda t, s, j, u, r: dict(
         zip("xyz", r.normal(size=3) * r.uniform(0.3, 0.9) * u.mass, strict=True)
     ),
-    "belt": lambda t, s, j, u, r: {"size": t, "other": r.integers(1, u.torque.size)},
+    "belt": lambda t, s, j, u, r: _belt(t, j, u, int(r.integers(1, u.torque.size))),
     "friction_of_another_joint": lambda t, s, j, u, r: {
         "size": t,
         "other": r.integers(1, u.torque.size),
@@ -121,6 +121,12 @@ SIZES: dict[str, Draw] = {
     },
     "wear_along_the_path": lambda t, s, j, u, r: {"size": t / u.speed[j]},
 }
+
+
+def _belt(torque: float, joint: int, usual: Usual, other: int) -> dict[str, float]:
+    """Taut at the middle of the motion: one that is drawn tight throughout is a constant torque, which is listed."""
+    ends = usual.centre[(joint + other) % usual.torque.size], usual.centre[joint]
+    return {"size": torque, "other": other, "slack": float(ends[0] - 0.5 * ends[1])}
 
 
 def _point(rng: np.random.Generator) -> dict[str, float]:

@@ -178,7 +178,7 @@ TERMS: dict[str, Callable[..., float]] = {
     ),
     "quadratic_drag": lambda p, own, other: p["c"] * own[1] * abs(own[1]),
     "torque_ripple": lambda p, own, other: p["A"] * np.sin(p["N"] * own[0] + p["phase"]),
-    "belt": lambda p, own, other: -p["size"] * np.tanh(3.0 * (other[0] - 0.5 * own[0])),
+    "belt": lambda p, own, other: -p["size"] * np.tanh(3.0 * (other[0] - 0.5 * own[0] - p["slack"])),
     "friction_of_another_joint": lambda p, own, other: p["size"] * np.tanh(other[1] / p["sharp"]),
     "wear_along_the_path": lambda p, own, other: p["size"] * own[1] * np.exp(np.sin(2.3 * own[0])),
 }
