@@ -42,18 +42,25 @@ def scored(case: Plant, result: Diagnosis) -> dict[str, Any]:
         "hidden": [asdict(h) for h in case.hidden],
         "not_shown": [h.effect for h, shown in zip(case.hidden, case.shown, strict=True) if not shown],
         "listed": len(asked),
-        "claims": [f"{e.effect} at {e.joint}" + "".join(f" | {t}" for t in e.tied_with) for e in result.effects],
+        "claims": [_told(e) for e in result.effects],
         "wrong": [f"{e.effect} at {e.joint}" for e, r in zip(result.effects, right, strict=True) if not r],
         "found": int(np.sum(found)),
         "unexplained": [u.joint for u in result.verdict.unexplained if u.above_noise],
     }
 
 
+def _told(claim: Any) -> str:
+    places = " or ".join((str(claim.joint), *claim.also_at))
+    return f"{claim.effect} at {places}" + "".join(f" | {t}" for t in claim.tied_with)
+
+
 def _says(claim: Any, cause: Hidden, joints: Sequence[str]) -> bool:
-    """Whether a claim, with at most two ties beside it, names a cause at its joint."""
+    """Whether a claim, with at most two ties beside it, names a cause at its joint; ties of places count likewise."""
     names = {claim.effect, *(t.split(" ")[0].split("@")[0] for t in claim.tied_with)}
+    places = {claim.joint, *claim.also_at}
     place = None if cause.joint is None else joints[cause.joint]
-    return cause.effect in names and len(names) <= MOST_TIED and (place is None or claim.joint in (place, None))
+    at_it = place is None or claim.joint is None or (place in places and len(places) <= MOST_TIED)
+    return cause.effect in names and len(names) <= MOST_TIED and at_it
 
 
 def _is_its_rotor(claim: Any, cause: Hidden, case: Plant) -> bool:

@@ -146,9 +146,10 @@ def _effect(state: DiagnosisState, n: int, comparison: Comparison, evidence: Eff
     joint = None if named.joint is None else state.problem.joints[named.joint]
     status = "tied" if comparison.tied else "named"
     words = explain(law, joint, parameters, comparison.tied, evidence)
-    words += alike_words([state.problem.joints[j] for j in comparison.elsewhere])
+    elsewhere = tuple(state.problem.joints[j] for j in comparison.elsewhere)
+    words += alike_words(elsewhere)
     words += SELDOM_MET if state.holdout_gain[comparison.index].silent else ""
-    return EffectFound(law.name, joint, status, comparison.tied, parameters, evidence, words)
+    return EffectFound(law.name, joint, status, comparison.tied, parameters, evidence, words, also_at=elsewhere)
 
 
 def _unexplained(state: DiagnosisState, joint: int) -> Unexplained:

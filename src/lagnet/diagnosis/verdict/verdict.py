@@ -40,7 +40,8 @@ class EffectEvidence:
 class EffectFound:
     """Physics that the nominal model lacks. `joint` is None for an effect of the whole arm.
 
-    A transient has the interval and the recording in which it acts; both are None for persistent effects.
+    A transient has the interval and the recording in which it acts; both are None for persistent effects. `also_at`
+    holds the other joints at which it would explain as much, where recordings do not tell which link has a mass.
     """
 
     effect: str
@@ -52,6 +53,7 @@ class EffectFound:
     explanation: str
     interval_s: tuple[float, float] | None = None
     recording: str | None = None
+    also_at: tuple[str, ...] = ()
 
     def value(self, parameter: str) -> float:
         """The fitted value of a parameter by name."""
