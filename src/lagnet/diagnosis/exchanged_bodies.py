@@ -19,14 +19,13 @@ from lagnet.diagnosis.selection.arm_search import refit_selection
 ALIKE = 1.1  # times the squared error of a joint, up to which two bodies explain the same
 
 
-def with_real_bodies(candidate: Candidate) -> Candidate | None:
-    """The candidate with one body exchanged for another that fits as well, so that no body is refuted.
-
-    None where no exchange will do.
-    """
+def with_real_bodies(candidate: Candidate) -> Candidate:
+    """The candidate, with one body exchanged for another that fits as well where that leaves none that is refuted."""
+    if not bodies_are_refuted(candidate):
+        return candidate
     exchanges = (c for i in _bodies(candidate) for _, c in _exchanges(candidate, i))
     likely = sorted(exchanges, key=lambda c: -c.selection.score)
-    return next((c for c in likely if not bodies_are_refuted(c)), None)
+    return next((c for c in likely if not bodies_are_refuted(c)), candidate)
 
 
 def with_links_alike(candidate: Candidate, comparisons: Sequence[Comparison]) -> tuple[Comparison, ...]:

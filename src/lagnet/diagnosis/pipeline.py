@@ -63,11 +63,11 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     first = Candidate(problem, equations, unseen, found, given.noise, given.seed)
     left = apply_rules([r for r in given.rules if not r.after_refit], first)
     candidate, rejected = left.candidate, left.rejected
-    if problem.given is None and bodies_are_refuted(candidate):
-        candidate = with_real_bodies(candidate) or candidate
-    beside = None if problem.given is not None else _beside_free_links(candidate, given)
-    if beside is not None:
-        return beside
+    if problem.given is None:
+        candidate = with_real_bodies(candidate)
+        beside = _beside_free_links(candidate, given)
+        if beside is not None:
+            return beside
     left = apply_rules([r for r in given.rules if r.after_refit], candidate)
     candidate, rejected = left.candidate, (*rejected, *left.rejected)
     comparisons = _comparisons(candidate)

@@ -25,11 +25,8 @@ from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.motion_terms import MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect, load_before, torque_with
 
-NOTHING = 1e-7  # of a joint's torque: a smaller term is zero
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
 NEGLIGIBLE = 0.01  # of the standard deviation of a joint's torque
-POSES = 50  # at which the mass matrix is tested
-INDEFINITE = 1e-9  # −(least eigenvalue of a mass matrix) over the largest torque: rounding
 NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
 MOST_SAMPLES = 120_000  # at full rate: of longer recordings, pieces spread over them
 

@@ -41,7 +41,7 @@ def positive_definite(
         x = choice.ridge.x
         layer = layer_of(design, x, rest)
         if design.n_bodies:
-            x, bodies = consistent_unknowns(design, joint_equations(design), choice, modelled_links(problem, effects))
+            x, bodies = consistent_unknowns(design, joint_equations(design), choice, _modelled_links(problem, effects))
             layer = replace(layer_of(design, x, rest), bodies=bodies)
         before, after = (m.mass_matrix(q) for m in (model, replace(model, identified=layer)))
         worst = int(np.argmin(np.linalg.eigvalsh(after)[:, 0]))
@@ -72,7 +72,7 @@ def _most_negative(design: Design, x: np.ndarray, direction: np.ndarray) -> int 
     return design.n_bodies + worst if inertia[worst] < 0 else None
 
 
-def modelled_links(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
+def _modelled_links(problem: Problem, effects: Sequence[NamedEffect]) -> np.ndarray:
     """Ten parameters of each link with named changes, shape (dof, 10)."""
     return inertial_parameters_of(problem.nominal) + named_body_change(problem.n_dof, effects)
 
@@ -132,10 +132,12 @@ def columns_of(design: Design, kind: str) -> list[tuple[int, MotionTerm]]:
 
 
 def rotors_of(design: Design, joints: Collection[int]) -> np.ndarray:
+    """Indices of the unknowns that are rotors of some joints."""
     return np.array([i for i, t in columns_of(design, "rotor") if t.joint in joints], dtype=int)
 
 
 def layer_of(design: Design, unknowns: np.ndarray, rest: Rest) -> IdentifiedLayer:
+    """The layer that scaled unknowns make, shape (n_unknowns,)."""
     x = design.unscaled(unknowns)
     bodies = x[: design.n_bodies].reshape(-1, BODY) if design.n_bodies else None
     weights = x[design.n_bodies :]

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.effects.catalogue import effect_named
 
 FAR = 4.0  # times the squared error with it, that all other effects must leave at a joint without it
+
+
+def is_open(candidate: Candidate, n: int, intervals: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether all 95 % intervals of effect n hold the values of its absence, and it is no body that is needed."""
+    law = effect_named(candidate.effects[n].effect)
+    return not law.is_determined(intervals) and not is_needed_body(candidate, n)
 
 
 def is_needed_body(candidate: Candidate, n: int) -> bool:

@@ -12,7 +12,7 @@ from lagnet.diagnosis.estimation.gauss_newton import spread
 from lagnet.diagnosis.estimation.superposition import Superposition
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.rules.candidate import Candidate
-from lagnet.diagnosis.rules.needed_body import is_needed_body
+from lagnet.diagnosis.rules.needed_body import is_open
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -42,10 +42,7 @@ class NegligibleTorque(RejectionRule):
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         sizes = self.sizes(candidate.problem, candidate.effects, candidate.sigma**2)
-        undetermined = [
-            not effect_named(e.effect).is_determined(intervals) and not is_needed_body(candidate, n)
-            for n, (e, intervals) in enumerate(zip(candidate.effects, candidate.refit.intervals, strict=True))
-        ]
+        undetermined = [is_open(candidate, n, intervals) for n, intervals in enumerate(candidate.refit.intervals)]
         ranked = [s * UNDETERMINED if u else s for s, u in zip(sizes, undetermined, strict=True)]
         small = sorted((n for n, size in enumerate(ranked) if size < 1.0), key=lambda n: ranked[n])
         silent = [n for n in small if sizes[n] < SILENT]  # without these nothing changes; else one at a time

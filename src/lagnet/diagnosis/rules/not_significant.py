@@ -12,7 +12,7 @@ from typing import ClassVar, final
 
 from lagnet.diagnosis.estimation.misspecification import interval_errors, widened
 from lagnet.diagnosis.rules.candidate import Candidate
-from lagnet.diagnosis.rules.needed_body import is_needed_body
+from lagnet.diagnosis.rules.needed_body import is_open
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
@@ -33,11 +33,7 @@ class NotSignificant(RejectionRule):
             return ()
         errors = interval_errors(candidate.problem, effects, candidate.sigma)
         wide = [widened(*pair) for pair in zip(candidate.refit.intervals, errors, strict=True)]
-        not_determined = [
-            n
-            for n, e in enumerate(effects)
-            if not effect_named(e.effect).is_determined(wide[n]) and not is_needed_body(candidate, n)
-        ]
+        not_determined = [n for n, intervals in enumerate(wide) if is_open(candidate, n, intervals)]
         if not not_determined:
             return ()
         sizes = NegligibleTorque.sizes(candidate.problem, effects)
