@@ -175,6 +175,11 @@ class Effect(ABC):
         """Whether its torque follows from the motion of its joint, whatever the nominal model."""
         return not (self.reaches_all or self.uses_load)
 
+    @property
+    def is_like_no_load(self) -> bool:
+        """Whether neither a body nor a share of the load has torque of its form: own motion or earlier times set it."""
+        return self.of_motion_alone or not self.instantaneous
+
     def excitation(self, motion: Motion, joint: int | None) -> str | None:
         """None if the motion can show the effect, else the reason why it cannot, for an abstention."""
         return None

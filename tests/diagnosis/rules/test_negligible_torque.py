@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from tests.diagnosis.conftest import Plant
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
@@ -35,3 +36,24 @@ def test_it_stays_where_it_explains_more_than_what_is_left(plant, arm, at) -> No
 def test_it_goes_where_more_is_left(plant, arm, at) -> None:
     real = plant(at(JOINT, lambda q, v, a, t: law(v) + 4.0 * SMALL * np.sin(11.0 * q)))
     assert rejected(arm, real) == {"coulomb_friction"}
+
+
+def found_alone(arm, effect: str, law) -> tuple[set[str], tuple[str, ...]]:
+    """What is rejected of one effect, and what the search takes, where noise is a thousandth of a small torque."""
+    real = Plant(arm, (law,), noise=1e-5, encoder=0.0)
+    posed = pose(arm, real.record(1), real.record(2))
+    candidate = posed.candidate(posed.select({JOINT: (effect,)}))
+    searched = posed.search().local[JOINT]
+    return (
+        {r.effect for r in NegligibleTorque().rejected(candidate)},
+        tuple(posed.library.hypotheses[i].effect for i in searched),
+    )
+
+
+def test_however_small_it_stays_where_next_to_nothing_else_is_left(arm, at) -> None:
+    share = 0.001  # of the torque: less than is claimed beside anything that it could stand for
+    small = share * Plant(arm).usual_torque()[JOINT]
+    drag = at(JOINT, lambda q, v, a, t: small * np.tanh(v / 1e-3))
+    assert found_alone(arm, "coulomb_friction", drag) == (set(), ("coulomb_friction",))
+    gain = at(JOINT, lambda q, v, a, t: share * t)  # as a link that is a little heavier would have it
+    assert found_alone(arm, "torque_gain", gain) == ({"torque_gain"}, ())

@@ -66,12 +66,11 @@ class NegligibleTorque(RejectionRule):
         nominal = _mean_square([problem.residual(p) for p in pieces])
         limits = problem.limits
         least = limits.least_power(problem.scale**2, nominal)
-        beside = limits.least_power(problem.scale**2, np.minimum(nominal, left / limits.least_of_residual))
         out = []
         for n, effect in enumerate(effects):
             parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
-            own = effect_named(effect.effect).of_motion_alone
-            out.append(float(np.max(_mean_square(parts) / (beside if own else least))))
+            enough = np.minimum(least, left) if effect_named(effect.effect).is_like_no_load else least
+            out.append(float(np.max(_mean_square(parts) / enough)))
         return out
 
 

@@ -203,15 +203,11 @@ def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:
     """Whether an arm-wide hypothesis lowers the squared error of some joint by enough to be claimed."""
     sigma = _sigma(equations, found, found.scales)
     without = fit_selection(equations, [i for i in found.indices if i != index], sigma)
-    return bool(noticeable(equations, found.scales, without.sse, found.fit.sse).any())
-
-
-def noticeable(equations: NormalEquations, scales: Scales, before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """E_before − E_after > max(s E_before, t² n var τ, r E_nominal): joints with a gain to be claimed, shape (dof,)."""
-    nominal = np.array([t[-1, -1] for t in equations.total])
-    limits = equations.limits
-    least = limits.least_power(scales.torque_power, nominal)
-    return before - after > np.maximum(limits.least_share * before, least)
+    before, after, limits = without.sse, found.fit.sse, equations.limits
+    least = limits.least_power(found.scales.torque_power, np.array([t[-1, -1] for t in equations.total]))
+    if equations.library.hypotheses[index].law.is_like_no_load:
+        least = np.minimum(least, np.maximum(after, found.scales.noise_power))
+    return bool(np.any(before - after > np.maximum(limits.least_share * before, least)))
 
 
 def _drop_far(equations: NormalEquations, best: Selection) -> Selection:

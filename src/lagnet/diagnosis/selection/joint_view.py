@@ -89,10 +89,11 @@ class JointView:
 
     def matters(self, selection: Sequence[int], index: int) -> bool:
         """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
-        without = self.error([i for i in selection if i != index])
-        gain = without - self.error(selection)
+        without, with_it = self.error([i for i in selection if i != index]), self.error(selection)
         least = float(self.limits.least_power(self.torque_power, self.system.power))
-        return gain > max(self.limits.least_share * without, least)
+        if self.equations.library.hypotheses[index].law.is_like_no_load:
+            least = min(least, max(with_it, self.noise_power))
+        return without - with_it > max(self.limits.least_share * without, least)
 
     @property
     def least_gain(self) -> float:
