@@ -19,7 +19,9 @@ def is_open(candidate: Candidate, n: int, intervals: Mapping[str, tuple[float, f
 
 
 def is_needed_body(candidate: Candidate, n: int) -> bool:
-    """Whether effect n is a body, without which all others leave a squared error E > 4 max(E, n σ²) at some joint.
+    """Whether effect n is a body, without which all others leave E > 4 max(E, n σ²), where fitted and where held out.
+
+    E is the squared error of a joint.
 
     Recordings determine combinations of a body's parameters, the first link's about its axis alone, and neighbouring
     bodies trade mass: by its own interval each parameter could then be zero, though not all of them. The others are
@@ -27,5 +29,10 @@ def is_needed_body(candidate: Candidate, n: int) -> bool:
     """
     if not effect_named(candidate.effects[n].effect).is_body:
         return False
-    found, less = candidate.selection, candidate.without(candidate.indices[n]).selection
-    return bool(np.any(less.fit.sse > FAR * np.maximum(found.fit.sse, found.scales.noise_power)))
+    index = candidate.indices[n]
+    found, less = candidate.selection, candidate.without(index).selection
+    fitted = less.fit.sse > FAR * np.maximum(found.fit.sse, found.scales.noise_power)
+    gain = candidate.holdout_gain[index]
+    at = list(gain.at_joints)
+    without, with_it = gain.powers
+    return bool(np.any(fitted[at] & (without > FAR * np.maximum(with_it, candidate.noise[at] ** 2))))
