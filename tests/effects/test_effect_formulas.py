@@ -156,7 +156,7 @@ LAWS: dict[str, tuple[dict[str, float], Law, float]] = {
     "torque_offset": ({"b": -1.7}, lambda s, j, p: np.full(s.motion.time.size, -1.7), ORACLE),
     "encoder_offset": ({"delta": 0.07}, encoder, ORACLE),
     "time_delay": ({"T": 0.013}, delay, SPLINE),
-    "joint_elasticity": ({"K": 4000.0}, elasticity, DIFFERENCES),
+    "joint_elasticity": ({"K": 4000.0, "D": 0.0}, elasticity, DIFFERENCES),
     "coupled_transmission": ({"Fv": 1.0, "Fc": 2.0, "Ia": 0.3, "ratio": -1.7}, coupled, ORACLE),
     "presliding_hysteresis": ({"sigma0": 60.0, "Fc": 2.0}, dahl, DIFFERENCES),
     "saturation": (
@@ -229,6 +229,28 @@ def test_backlash_lets_the_link_fall_free_between_the_flanks(ur5, sweep, seed: i
     torque = CATALOGUE["backlash"].torque(m, joint, {"h": half_gap})
     scale = np.abs(m.load).max()
     np.testing.assert_allclose(torque[free], expected[free], rtol=0, atol=DIFFERENCES * scale)
+
+
+@given(seed=seeds, constant=st.floats(1e-3, 0.2))
+@few
+def test_a_damped_transmission_winds_until_spring_and_damper_hold_its_load(
+    ur5, sweep, seed: int, constant: float
+) -> None:
+    m = sweep(ur5, seed).motion
+    motion, joint, stiffness = replace(m, recorded=m.load), seed % 6, 4000.0
+    lag, speed, _ = CATALOGUE["joint_elasticity"].shift(motion, joint, {"K": stiffness, "D": constant * stiffness})
+    held, load = -stiffness * (lag + constant * speed), m.load[:, joint]
+    np.testing.assert_allclose(held[1:-1], load[1:-1], rtol=0, atol=0.02 * np.abs(load).max())
+
+
+def test_one_of_many_intervals_leaves_out_its_absence_by_chance() -> None:
+    law = effect_named("link_inertia")
+    open_ = {name: (-1.0, 1.0) for name, _ in law.absence}
+    first = law.absence[0][0]
+    assert not law.is_determined(open_)
+    assert not law.is_determined({**open_, first: (0.01, 2.0)})  # 2 standard deviations of one out of ten
+    assert law.is_determined({**open_, first: (0.7, 2.7)})  # 3.3
+    assert effect_named("viscous_friction").is_determined({"Fv": (0.01, 2.0)})  # alone
 
 
 def test_every_effect_has_a_law_written_by_hand() -> None:

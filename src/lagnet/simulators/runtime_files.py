@@ -34,6 +34,7 @@ def settings_of(arm: ArmPhysics) -> dict[str, Any]:
         "stiffness": arm.stiffness,
         "spring_rest": arm.spring_rest,
         "elasticity": arm.elasticity,
+        "twist_damping": arm.twist_damping,
         "half_gap": arm.half_gap,
         "gravity": arm.robot.gravity,
     }

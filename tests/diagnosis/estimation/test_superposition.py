@@ -17,7 +17,7 @@ EFFECTS = (
     NamedEffect("payload", None, dict(enumerate((1.2, 0.01, 0.02, 0.1, 0.01, 0, 0.01, 0, 0, 0.01)))),
     NamedEffect("gravity_tilt", None, {"theta_1": 0.03, "theta_2": -0.02}),
     NamedEffect("rotor_inertia", 1, {"Ia": 0.3}),
-    NamedEffect("joint_elasticity", 1, {"K": 4000.0}),
+    NamedEffect("joint_elasticity", 1, {"K": 4000.0, "D": 20.0}),
     NamedEffect("backlash", 4, {"h": 0.002}),
     NamedEffect("viscous_friction", 0, {"Fv": 2.0}),
     NamedEffect("load_dependent_friction", 1, {"mu": 0.05}),

@@ -22,8 +22,8 @@ from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 5  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
-# 5: torque and friction over position
+FORMAT = 6  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
+# 5: torque and friction over position; 6: flexible joints with dampers
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200

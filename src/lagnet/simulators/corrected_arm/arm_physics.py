@@ -79,6 +79,7 @@ class ArmPhysics:
         load_friction: shape (dof,), dry friction per torque carried.
         stiffness, spring_rest: shape (dof,), spring towards a position [N m/rad, rad].
         elasticity: shape (dof,), stiffness between motor and link, infinite where they are one [N m/rad].
+        twist_damping: shape (dof,), damping between motor and link [N m s/rad].
         half_gap: shape (dof,), half the play between motor and link [rad].
         stribeck, ripples, couplings, bristles: terms at single joints.
         drives: what lies between a commanded torque and the joint, one for each joint.
@@ -98,6 +99,7 @@ class ArmPhysics:
     stiffness: JointVector
     spring_rest: JointVector
     elasticity: JointVector
+    twist_damping: JointVector
     half_gap: JointVector
     stribeck: tuple[StribeckTerm, ...]
     ripples: tuple[RippleTerm, ...]
@@ -213,12 +215,12 @@ def _flattened(model: Any) -> tuple[Any, list[NamedEffect], JointVector | None]:
 
 def _bare(robot: Robot, rotor: JointVector, blur: JointVector | None, transient: tuple[NamedEffect, ...]) -> ArmPhysics:
     n = robot.n_dof
-    zero = [np.zeros(n) for _ in range(8)]
+    zero = [np.zeros(n) for _ in range(10)]
     rigid = np.full(n, np.inf)
     drives = tuple(Drive() for _ in range(n))
     blurred = np.zeros(n) if blur is None else np.asarray(blur, dtype=float)
-    shift, viscous, quadratic, forward, backward, load, stiffness, rest = zero
-    fields = (shift, rotor, viscous, quadratic, forward, backward, load, stiffness, rest, rigid, np.zeros(n))
+    shift, viscous, quadratic, forward, backward, load, stiffness, rest, damping, gap = zero
+    fields = (shift, rotor, viscous, quadratic, forward, backward, load, stiffness, rest, rigid, damping, gap)
     return ArmPhysics(robot, *fields, (), (), (), (), drives, blurred, transient)
 
 
@@ -272,7 +274,7 @@ def _elastic(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
     """Springs in a row add their compliances."""
     stiffness = arm.elasticity.copy()
     stiffness[joint] = 1.0 / (1.0 / stiffness[joint] + 1.0 / v["K"])
-    return replace(arm, elasticity=stiffness)
+    return replace(arm, elasticity=stiffness, twist_damping=_plus(arm.twist_damping, joint, v.get("D", 0.0)))
 
 
 def _driven(arm: ArmPhysics, joint: int, drive: Drive) -> ArmPhysics:

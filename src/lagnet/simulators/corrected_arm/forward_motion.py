@@ -120,6 +120,7 @@ class ForwardMotion:
         for joint in self._split:
             if np.isfinite(arm.elasticity[joint]):
                 wound = arm.elasticity[joint] * (x[self._port[joint]] - x[joint])
+                wound += arm.twist_damping[joint] * (w[self._port[joint]] - w[joint])
                 out[joint] += wound
                 out[self._port[joint]] -= wound
         return out

@@ -118,6 +118,7 @@ def servo_arm(model: ServoDrivenModel) -> ServoArm:
         stiffness=laws[:, SPRING],
         spring_rest=laws[:, SPRING_REST],
         elasticity=np.where(laws[:, STIFFNESS] > 0.0, laws[:, STIFFNESS], np.inf),
+        twist_damping=laws[:, TWIST_DAMPING],
         half_gap=laws[:, GAP],
         stribeck=tuple(
             StribeckTerm(j, float(law[STATIC]), max(float(law[STRIBECK_SPEED]), AT_ONCE))

@@ -142,6 +142,8 @@ def _link_side(element: Element, body: TreeBody, arm: ArmPhysics, j: int) -> Non
     if np.isfinite(arm.elasticity[j]):
         joint = _joint(element, body, body.joint + LINK)
         joint.set("stiffness", number(arm.elasticity[j]))
+        if arm.twist_damping[j]:
+            joint.set("damping", number(arm.twist_damping[j]))
     if arm.half_gap[j] > 0.0:
         gap = _joint(element, body, body.joint + GAP)
         gap.set("range", numbers(np.array([-1.0, 1.0]) * arm.half_gap[j]))

@@ -43,7 +43,7 @@ CASES: Mapping[str, Mapping[str, float]] = {
     "load_dependent_friction": {"K": 0.2},
     "torque_ripple": {"N": 12.0, "amplitude": 0.5, "phase": 0.4},
     "encoder_offset": {"delta": 0.12},
-    "joint_elasticity": {"K": 60.0},
+    "joint_elasticity": {"K": 60.0, "D": 0.3},
     "backlash": {"h": 0.01},
     "presliding_hysteresis": {"sigma0": 25.0, "Fc": 0.6},
     "saturation": {"tau_max": 2.0},

@@ -134,10 +134,11 @@ class CorrectedArm:
             way, most = moved[self.motors[joint]], friction / stiffness
             self.bend[k] = np.sign(way) * most + (self.bend[k] - np.sign(way) * most) * np.exp(-abs(way) / most)
 
-    def _across(self, joint, twist, _speed):
+    def _across(self, joint, twist, speed):
         """Torque that a transmission holds against a twist."""
         elasticity = self.settings["elasticity"][joint]
-        return 0.0 if elasticity is None else elasticity * twist
+        spring = 0.0 if elasticity is None else elasticity * twist
+        return spring + self.settings["twist_damping"][joint] * speed
 
     def _driven(self, torque):
         """Torque at the joints behind scale, zero, limit and clock of the log."""

@@ -85,9 +85,6 @@ class ServoArm(CorrectedArm):
             damping[link] = self.twist[j]
         return np.diag(damping)
 
-    def _across(self, joint, twist, speed):
-        return super()._across(joint, twist, speed) + self.twist[joint] * speed
-
     def _driven(self, torque):
         return np.asarray(torque, dtype=float)
 

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from lagnet.rigid_body.body_tree import TreeBody
 from lagnet.rollout.surface import BODY, FRICTION, HEIGHT, PX, PZ
-from lagnet.servos.parameters import BIAS, DELAY, KD, KP, OFFSET, TWIST_DAMPING
+from lagnet.servos.parameters import BIAS, DELAY, KD, KP, OFFSET
 from lagnet.simulators.corrected_arm.servo_arm import ServoArm, settings_of_servos
 from lagnet.simulators.exporter import Place, approximate, exact
 from lagnet.simulators.exporters.mjcf import LINK, MjcfExporter, delayed, mjcf_of
@@ -62,10 +62,6 @@ class MjcfServoExporter(ServoExporter):
         for old in [*root.findall("actuator"), *root.findall("sensor")]:
             root.remove(old)
         tree = arm.arm.robot.body_tree()
-        for j, body in enumerate(tree):
-            for joint in root.iter("joint"):
-                if joint.get("name") == body.joint + LINK and arm.laws[j, TWIST_DAMPING] > 0.0:
-                    joint.set("damping", number(arm.laws[j, TWIST_DAMPING]))
         _actuators(root, arm, tree)
         if arm.surface is not None:
             _surface(root, arm, tree)
