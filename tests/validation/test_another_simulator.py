@@ -12,6 +12,7 @@ from validation.another_simulator.mujoco_arm import MujocoArm
 from validation.another_simulator.plants import plant
 from validation.another_simulator.study import figures, judge
 
+from lagnet.diagnosis.diagnose import diagnose
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 
@@ -91,3 +92,19 @@ def test_figures_count_claims_and_causes() -> None:
     assert judge(found) == {"precision": False, "recall": True, "nothing_hidden": True}
     assert json.dumps(found)
     assert Hidden("payload", None).values == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "index", "expected"),
+    [
+        (87, 1, {"coulomb_friction"}),  # which turns 7 ms before the speed does, and is no delay
+        (82, 37, {"coulomb_friction", "time_delay"}),  # 0.5 % of the torque
+        (84, 15, {"joint_elasticity", "rotor_inertia"}),
+        (83, 16, {"viscous_friction", "saturation"}),  # a limit that friction reaches
+    ],
+)
+def test_small_causes_have_their_names_and_no_others(seed: int, index: int, expected: set[str]) -> None:
+    case = plant(seed, index, 22.0)
+    result = diagnose(case.recordings[:-1], case.robot, case.recordings[-1:], seed=0)
+    assert {e.effect for e in result.effects} == expected

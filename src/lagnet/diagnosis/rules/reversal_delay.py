@@ -15,13 +15,12 @@ from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.named_effects import NamedEffect
 
 
 @final
 @dataclass(frozen=True)
 class ReversalDelay(RejectionRule):
-    """Error without the delay over that with it, between changes of direction, exceeds the shared ratio."""
+    """Error without the delay, all others fitted anew, over that with it exceeds the shared ratio between reversals."""
 
     name: ClassVar[str] = "reversal_delay"
     statement: ClassVar[str] = "a delay beside dry friction helps between the changes of direction as well"
@@ -30,18 +29,16 @@ class ReversalDelay(RejectionRule):
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         dry = {e.joint for e in candidate.effects if effect_named(e.effect).is_dry_friction}
         for index, effect in zip(candidate.indices, candidate.effects, strict=True):
-            if not effect_named(effect.effect).is_delay or effect.joint not in dry:
+            if effect.joint is None or not effect_named(effect.effect).is_delay or effect.joint not in dry:
                 continue
-            ratio = self._ratio_between_reversals(candidate, effect)
+            ratio = self._ratio_between_reversals(candidate, index, effect.joint)
             if ratio <= candidate.limits.least_ratio:
                 detail = f"between changes of direction the error without it is {ratio:.4g} times that with it"
                 return (self.rejection(candidate, index, ratio, candidate.limits.least_ratio, detail),)
         return ()
 
-    def _ratio_between_reversals(self, candidate: Candidate, delay: NamedEffect) -> float:
-        joint = delay.joint
-        assert joint is not None
+    def _ratio_between_reversals(self, candidate: Candidate, delay: int, joint: int) -> float:
         between = np.concatenate([~near_reversal(p, joint)[p.keep] for p in candidate.problem.fit])
-        others = tuple(e for e in candidate.effects if e is not delay)
+        others = candidate.without(delay).effects  # fitted anew: beside the delay they stand for what it gets wrong
         with_it, without = (np.sum(candidate.residual("fit", e)[between, joint] ** 2) for e in (None, others))
         return float(without / max(with_it, 1e-300))
