@@ -80,6 +80,7 @@ class Effect(ABC):
     is_body: ClassVar[bool] = False  # True: its coordinates are inertial parameters of a body
     changes_link: ClassVar[bool] = False  # True: that body is a modelled link, not one that is added
     is_delay: ClassVar[bool] = False  # True: the torque signal comes late
+    is_limit: ClassVar[bool] = False  # True: it acts where the whole torque, friction and all, exceeds a value
 
     @abstractmethod
     def torque(self, motion: Motion, joint: int | None, values: Mapping[str, float]) -> np.ndarray:

@@ -32,6 +32,18 @@ def test_a_limit_that_only_the_loaded_arm_reaches_is_named(plant, arm, loaded, a
     assert found["payload"].value("m") == pytest.approx(MASS, rel=0.02)
 
 
+@pytest.mark.parametrize("share", [0.15, 0.4])
+def test_a_limit_that_only_friction_reaches_is_named(plant, arm, at, names, share: float) -> None:
+    limit = 1.02 * max(float(np.abs(plant().record(s).tau[:, 1]).max()) for s in (1, 2, 3))
+    drag = share * limit
+    real = plant(at(1, lambda q, v, a, body: np.clip(body + drag * v, -limit, limit) - body))
+    result = diagnose([real.record(1), real.record(2)], arm, [real.record(3)])
+    assert names(result) == {("viscous_friction", arm.joints[1]), ("saturation", arm.joints[1])}
+    found = {e.effect: e for e in result.effects}
+    assert found["saturation"].value("tau_max") == pytest.approx(limit, rel=0.01)
+    assert found["viscous_friction"].value("Fv") == pytest.approx(drag, rel=0.01)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("gain", [0.8, 1.25])
 def test_a_gain_of_a_joint_that_the_payload_loads_is_named(plant, arm, loaded, at, names, gain: float) -> None:

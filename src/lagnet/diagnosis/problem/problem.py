@@ -10,6 +10,7 @@ import numpy as np
 
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.settings import DecisionLimits
+from lagnet.effects.effect import Effect
 from lagnet.effects.motion import Motion
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.model import torque_along
@@ -93,6 +94,7 @@ class Problem:
         missed: shape (dof,), torque that the nominal model is known to miss, root mean square; None: not known [N m].
         limits: where the diagnosis decides.
         known: effects by which the load differs from the nominal one, for the columns of effects that act on it.
+        below_limits: torque of single joints whose recorded torque stops at a limit, for the columns of that.
         given: the model as it was given, where `nominal` has links as the recordings determine them; None: `nominal`.
     """
 
@@ -107,6 +109,7 @@ class Problem:
     held: np.ndarray | None = None
     missed: np.ndarray | None = None
     known: tuple[NamedEffect, ...] = ()
+    below_limits: tuple[NamedEffect, ...] = ()
     straight: np.ndarray | None = None
     limits: DecisionLimits = field(default_factory=DecisionLimits)
     given: InverseDynamics | None = None
@@ -115,6 +118,10 @@ class Problem:
     def n_dof(self) -> int:
         """Number of joints."""
         return len(self.joints)
+
+    def known_to(self, law: Effect) -> tuple[NamedEffect, ...]:
+        """Effects by which the load that a law acts on differs from the nominal one."""
+        return (*self.known, *self.below_limits) if law.is_limit else self.known
 
     @cached_property
     def is_small(self) -> bool:

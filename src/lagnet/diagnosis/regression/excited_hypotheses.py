@@ -24,7 +24,7 @@ def build_library(problem: Problem, effects: tuple[Effect, ...] | None = None) -
         if effect.is_body and problem.given is not None:  # the links are free already
             continue
         for joint in _places(effect, problem.n_dof):
-            seen = as_seen(summary, problem.known, effect)
+            seen = as_seen(summary, problem.known_to(effect), effect)
             reason = _reason_against(effect, seen, joint, has_bodies)
             shapes = () if reason else effect.shapes(seen, joint)
             if reason:

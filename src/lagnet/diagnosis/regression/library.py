@@ -77,6 +77,11 @@ class Library:
     n_dof: int
     abstentions: tuple[Abstention, ...]
 
+    def of(self, indices: Sequence[int]) -> Library:
+        """Some of the hypotheses alone, in their order."""
+        picked = tuple(indices)
+        return Library(tuple(self.hypotheses[i] for i in picked), tuple(self.widths[i] for i in picked), self.n_dof, ())
+
     @cached_property
     def reaching(self) -> tuple[int, ...]:
         """Indices of the arm-wide hypotheses: those that change the torque of other joints, too."""
@@ -211,11 +216,12 @@ class Library:
         if h.law.of_motion_alone and h.joint is not None:
             return h, _sign_model(problem, h.joint)
         sign = tuple(None if x is None else x.tobytes() for x in (problem.slow, problem.straight, problem.held))
-        known = problem.known if h.law.uses_load or h.effect in (*BODIES, OFFSET, GravityTilt.name) else ()
+        known = problem.known_to(h.law) if h.law.uses_load or h.effect in (*BODIES, OFFSET, GravityTilt.name) else ()
         return h, sign, tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
 
     def _columns(self, index: int, motion: Motion, problem: Problem) -> np.ndarray:
-        h, known = self.hypotheses[index], problem.known
+        h = self.hypotheses[index]
+        known = problem.known_to(h.law)
         seen = as_seen(motion, known, h.law)
         if known and isinstance(h.law, Transmission) and h.joint is not None:
             return transmission_columns(seen, h.law, h.joint, known, dict(h.shape))

@@ -73,8 +73,13 @@ def search_arm(
     """
     scales = Scales(np.full(equations.library.n_dof, FIRST_INEFFICIENCY), noise_power, torque_power)
     grown = [_grow(equations, _settle(equations, start.arm_wide if start else (), scales, start)) for start in starts]
-    alike = replace(scales, inefficiency=np.min([f.scales.inefficiency for f in grown], axis=0))
-    return max(grown, key=lambda f: refit_selection(equations, replace(f, scales=alike)).score)
+    memory = np.min([f.scales.inefficiency for f in grown], axis=0)
+    return max(grown, key=lambda f: score_under(equations, f, memory))
+
+
+def score_under(equations: NormalEquations, found: Selection, inefficiency: np.ndarray) -> float:
+    """log P(S) with g of a given shape (dof,): scores under the g of their own residuals do not compare."""
+    return refit_selection(equations, replace(found, scales=replace(found.scales, inefficiency=inefficiency))).score
 
 
 def _grow(equations: NormalEquations, best: Selection) -> Selection:

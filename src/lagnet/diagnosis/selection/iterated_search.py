@@ -17,7 +17,8 @@ from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
 from lagnet.diagnosis.regression.excited_hypotheses import build_library
 from lagnet.diagnosis.regression.library import Library
-from lagnet.diagnosis.selection.arm_search import Selection, search_arm
+from lagnet.diagnosis.selection.arm_search import Selection, score_under, search_arm
+from lagnet.diagnosis.selection.below_limits import found_below_limits
 from lagnet.diagnosis.selection.gain_exchange import exchange_gains
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
@@ -45,12 +46,16 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquation
     rounds = [(problem, *_search_once(problem, noise))]
     for _ in range(ROUNDS):
         problem, equations, found = rounds[-1]
-        known = _known(equations.library, found)
-        if not _is_news(problem, known, found.fit.sse > LEFT * equations.samples * noise**2):
+        known, left = _known(equations.library, found), found.fit.sse > LEFT * equations.samples * noise**2
+        below = found_below_limits(problem, equations.library, found, known, left * found.fit.sse / equations.samples)
+        if not _is_news(problem, known, below, left):
             break
-        problem = replace(problem, known=known)
+        problem = replace(problem, known=known, below_limits=below)
         rounds.append((problem, *_search_once(problem, noise, (equations.library, found))))
     counted = [*rounds[:1], *(r for r in rounds[1:] if _bears_its_columns(r[0], _known(r[1].library, r[2])))]
+    if any(r[0].below_limits for r in counted):  # a limit that was missed correlates the residual, and g differs widely
+        memory = np.max([found.scales.inefficiency for _, _, found in counted], axis=0)
+        return max(reversed(counted), key=lambda r: score_under(r[1], r[2], memory))
     return max(reversed(counted), key=lambda r: r[2].score)
 
 
@@ -102,16 +107,19 @@ def _bears_its_columns(problem: Problem, selected: tuple[NamedEffect, ...]) -> b
     return bool(apart < whole)
 
 
-def _is_news(problem: Problem, known: tuple[NamedEffect, ...], left: np.ndarray) -> bool:
+def _is_news(
+    problem: Problem, known: tuple[NamedEffect, ...], below: tuple[NamedEffect, ...], left: np.ndarray
+) -> bool:
     """Whether the torque of some joint with a residual above noise differs from that which the columns follow from.
 
     With a tilt too large for the law made linear about the level base, any joint counts: bodies may hide what was left.
     """
     if any(e.effect == TILT and is_bent(e.values) for e in known):
         left = np.ones_like(left)
-    if not left.any() or not (known or problem.known):
+    pair = (*problem.known, *problem.below_limits), (*known, *below)
+    if not left.any() or not any(pair):
         return False
     motion = problem.summary()
-    before, now = (load_before(motion, effects, "signal") for effects in (problem.known, known))
+    before, now = (load_before(motion, effects, "signal") for effects in pair)
     change = np.mean((now - before) ** 2, axis=0)
     return bool(np.any(left & (change > CHANGED**2 * np.mean(motion.load**2, axis=0))))

@@ -37,7 +37,7 @@ def proposals_from_residual(problem: Problem, equations: NormalEquations, found:
 
 def _left(problem: Problem, library: Library, found: Selection) -> tuple[Motion, np.ndarray]:
     """Motion and residual of the selection on the valid samples, shape (n, dof)."""
-    chosen, pieces = _chosen(library, found), spread_evenly(problem.fit, MOST_SAMPLES)
+    chosen, pieces = library.of(found.indices), spread_evenly(problem.fit, MOST_SAMPLES)
     thetas = [found.fit.coefficients[i] for i in found.indices]
     rests = [_rest(problem, chosen, thetas, piece) for piece in pieces]
     time, q, v, a, load = (
@@ -45,12 +45,6 @@ def _left(problem: Problem, library: Library, found: Selection) -> tuple[Motion,
     )
     motion = Motion(time, q, v, a, load, problem.slow, problem.nominal, straight=problem.straight)
     return motion, np.concatenate(rests)
-
-
-def _chosen(library: Library, found: Selection) -> Library:
-    """The hypotheses of a selection alone, in its order."""
-    hypotheses = tuple(library.hypotheses[i] for i in found.indices)
-    return Library(hypotheses, tuple(library.widths[i] for i in found.indices), library.n_dof, ())
 
 
 def _rest(problem: Problem, chosen: Library, thetas: list[np.ndarray], piece: Segment) -> np.ndarray:

@@ -27,12 +27,13 @@ class Saturation(Effect):
     confused_with = ("torque_gain",)
     absent = ()
     uses_load = True
+    is_limit = True
     source = "swevers2007"
 
     def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
         if motion.recorded is None:
             return ()
-        limit = _plateau(np.abs(motion.recorded[:, joint]))
+        limit = plateau(np.abs(motion.recorded[:, joint]))
         if limit is None or not np.any(np.abs(motion.load[:, joint]) > limit):
             return ()
         return ({"tau_max": limit},)
@@ -54,7 +55,7 @@ class Saturation(Effect):
         return needs_any_motion(motion)
 
 
-def _plateau(size: np.ndarray) -> float | None:
+def plateau(size: np.ndarray) -> float | None:
     """Middle of the level near which most of the largest torques lie, None where they do not gather."""
     ordered = np.sort(size)
     on = np.searchsorted(ordered, WIDE * ordered, side="right") - np.arange(size.size)
