@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lagnet.effects.effect import Effect
+
 
 @dataclass(frozen=True)
 class DecisionLimits:
@@ -49,3 +51,14 @@ class DecisionLimits:
             torque, nominal: power of a joint's torque about its mean, and of what the nominal model leaves.
         """
         return np.maximum(self.least_torque**2 * torque, self.least_of_residual * nominal)
+
+    def least_power_of(
+        self, law: Effect, torque: float | np.ndarray, nominal: float | np.ndarray, left: float | np.ndarray
+    ) -> np.ndarray:
+        """The same of one law; not more than what all effects leave, where the law's torque is like no load's [N² m²].
+
+        The least power guards against bodies, and shares of the load, that stand for a part of a larger cause of their
+        kind. An effect of another form that explains more than all that is left stands for nothing else.
+        """
+        least = self.least_power(torque, nominal)
+        return np.minimum(least, left) if law.is_like_no_load else least

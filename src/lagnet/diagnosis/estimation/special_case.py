@@ -42,11 +42,7 @@ def _leaves_less(problem: Problem, n: int, free: Sequence[NamedEffect], plain: S
     nominal, without, before, after = (_power(problem, problem.fit, e) for e in ((), absent, plain, free))
     explained = np.minimum(without - after, problem.scale**2)
     shares = (limits.least_share * before, limits.least_over_special_case * explained)
-    least = limits.least_power(problem.scale**2, nominal)
-    if effect_named(
-        free[n].effect
-    ).is_like_no_load:  # nothing else than its further term could explain most that is left
-        least = np.minimum(least, after)
+    least = limits.least_power_of(effect_named(free[n].effect), problem.scale**2, nominal, after)
     noticeable = before - after > np.maximum.reduce([*shares, least])
     confirmed = _power(problem, problem.holdout, free) <= _power(problem, problem.holdout, plain)
     return bool(np.any(noticeable & confirmed))

@@ -24,12 +24,12 @@ UNDETERMINED = 1e-9  # weight of an effect whose intervals all hold the value of
 @final
 @dataclass(frozen=True)
 class NegligibleTorque(RejectionRule):
-    """Power of the effect's torque, over max(t² var τ, min(r mean r², left)), exceeds one at some joint.
+    """Power of the effect's torque, over min(max(t² var τ, r mean r²), left), exceeds one at some joint.
 
     t and r are shared limits, r the residual of the nominal model, `left` the power of what all effects leave. Beside a
     cause that makes the nominal model almost all wrong, a share of that error is much: an effect that explains more
-    than all that is left there is none to be passed over. That holds of laws of the joint's own motion alone; a share
-    of the load, or a body, may stand for a part of the large cause.
+    than all that is left there is none to be passed over. That holds of laws whose torque is like no load's; a share
+    of the load, or a body, may stand for a part of the large cause, and `left` does not count for it.
     """
 
     name: ClassVar[str] = "negligible_torque"
@@ -64,13 +64,11 @@ class NegligibleTorque(RejectionRule):
         motions = [p.motion(problem) for p in pieces]
         sums = [Superposition(m, effects) for m in motions]
         nominal = _mean_square([problem.residual(p) for p in pieces])
-        limits = problem.limits
-        least = limits.least_power(problem.scale**2, nominal)
         out = []
         for n, effect in enumerate(effects):
             parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
-            enough = np.minimum(least, left) if effect_named(effect.effect).is_like_no_load else least
-            out.append(float(np.max(_mean_square(parts) / enough)))
+            least = problem.limits.least_power_of(effect_named(effect.effect), problem.scale**2, nominal, left)
+            out.append(float(np.max(_mean_square(parts) / least)))
         return out
 
 

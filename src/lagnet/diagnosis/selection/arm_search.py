@@ -208,10 +208,9 @@ def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:
     """Whether an arm-wide hypothesis lowers the squared error of some joint by enough to be claimed."""
     sigma = _sigma(equations, found, found.scales)
     without = fit_selection(equations, [i for i in found.indices if i != index], sigma)
-    before, after, limits = without.sse, found.fit.sse, equations.limits
-    least = limits.least_power(found.scales.torque_power, np.array([t[-1, -1] for t in equations.total]))
-    if equations.library.hypotheses[index].law.is_like_no_load:
-        least = np.minimum(least, np.maximum(after, found.scales.noise_power))
+    before, after, limits, scales = without.sse, found.fit.sse, equations.limits, found.scales
+    law, nominal = equations.library.hypotheses[index].law, np.array([t[-1, -1] for t in equations.total])
+    least = limits.least_power_of(law, scales.torque_power, nominal, np.maximum(after, scales.noise_power))
     return bool(np.any(before - after > np.maximum(limits.least_share * before, least)))
 
 

@@ -90,9 +90,8 @@ class JointView:
     def matters(self, selection: Sequence[int], index: int) -> bool:
         """Whether an effect lowers the squared error by enough, compared with E and with the torque, to be claimed."""
         without, with_it = self.error([i for i in selection if i != index]), self.error(selection)
-        least = float(self.limits.least_power(self.torque_power, self.system.power))
-        if self.equations.library.hypotheses[index].law.is_like_no_load:
-            least = min(least, max(with_it, self.noise_power))
+        law, left = self.equations.library.hypotheses[index].law, max(with_it, self.noise_power)
+        least = float(self.limits.least_power_of(law, self.torque_power, self.system.power, left))
         return without - with_it > max(self.limits.least_share * without, least)
 
     @property
