@@ -51,6 +51,16 @@ def rewrite(folder, **changes) -> None:
     (folder / FILE).write_text(json.dumps(text | changes))
 
 
+def test_a_flexible_joint_of_an_older_folder_has_no_damper(tmp_path) -> None:
+    effect = NamedEffect("joint_elasticity", 1, {"K": 90.0, "D": 0.0})
+    model = CorrectedModel(random_arm(3, seed=5, kinds=("revolute",)), (effect,), np.full(3, 0.01))
+    folder = save_corrected(model, tmp_path / "corrected")
+    text = json.loads((folder / FILE).read_text())
+    del text["effects"][0]["values"]["D"]
+    rewrite(folder, format=5, effects=text["effects"])
+    assert load_any(folder).effects == (effect,)
+
+
 def test_a_coupled_motor_of_an_older_folder_keeps_its_ratio(tmp_path) -> None:
     values = {"Fv": 1.0, "Fc": 0.5, "Ia": 0.1, "ratio": -1.0}
     effect = NamedEffect("coupled_transmission", 1, values)

@@ -10,8 +10,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from lagnet.models.corrected.model import CorrectedModel
-from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics
+from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.rigid_body.random_arm import random_arm
+from lagnet.simulators.corrected_arm.arm_physics import ArmPhysics, arm_physics
 from lagnet.simulators.engines.registry import engine_of
 from lagnet.simulators.registry import EXPORTERS
 from lagnet.simulators.runtime.run_mujoco import CorrectedArm as MujocoArm
@@ -44,6 +45,16 @@ def test_mjcf_holds_bodies_rotors_and_friction(physics: ArmPhysics, tmp_path: Pa
     np.testing.assert_allclose(arm.model.dof_damping, physics.viscous)
     np.testing.assert_allclose(arm.model.dof_frictionloss, [0.0, 0.6, 0.8])
     np.testing.assert_allclose(arm.model.jnt_stiffness, physics.stiffness)
+
+
+def test_mjcf_holds_spring_and_damper_of_a_flexible_joint(tmp_path: Path) -> None:
+    effects = (NamedEffect("joint_elasticity", 1, {"K": 90.0, "D": 0.7}), NamedEffect("rotor_inertia", 1, {"Ia": 0.1}))
+    bare = random_arm(3, seed=5, kinds=("revolute",))
+    written("mjcf", arm_physics(CorrectedModel(bare, effects, np.full(3, 0.01))), tmp_path)
+    arm = MujocoArm(tmp_path)
+    link = next(j for j in range(arm.model.njnt) if arm.model.jnt_stiffness[j] > 0.0)
+    np.testing.assert_allclose(arm.model.jnt_stiffness[link], 90.0)
+    np.testing.assert_allclose(arm.model.dof_damping[arm.model.jnt_dofadr[link]], 0.7)
 
 
 def test_urdf_holds_bodies_and_the_mounting(physics: ArmPhysics, tmp_path: Path) -> None:
