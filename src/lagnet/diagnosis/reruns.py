@@ -150,7 +150,7 @@ def on_one_clock(first: DiagnosisState, shifted: Callable[[float], DiagnosisStat
     Args:
         shifted: a run on the same recordings, torques read that much later [s].
     """
-    delays = {e.joint: e.values["T"] for e in first.effects if effect_named(e.effect).is_delay and e.joint is not None}
+    delays = _delays(first)
     small = [t for t in delays.values() if abs(t) <= HELD / first.fit.rate]
     if not small:
         return first
@@ -159,10 +159,15 @@ def on_one_clock(first: DiagnosisState, shifted: Callable[[float], DiagnosisStat
         return first
     second = shifted(shift)
     others = [j for j in range(first.problem.n_dof) if j not in delays]
-    asked = first.problem.limits.complexity_penalty * (
-        2 - len(small)
-    )  # one shift in the place of many delays is worth what each of them cost
+    saved = len(delays) - len(_delays(second))  # one shift in the place of many delays is worth what each of them cost
+    asked = first.problem.limits.complexity_penalty * (2 - saved)
     return second if not others or _clock_gain(first, second, others) > asked else first
+
+
+def _delays(state: DiagnosisState) -> dict[int, float]:
+    """Delay of each joint that has one by name [s]."""
+    found = (e for e in state.effects if effect_named(e.effect).is_delay)
+    return {e.joint: e.values["T"] for e in found if e.joint is not None}
 
 
 def _clock_gain(first: DiagnosisState, second: DiagnosisState, joints: list[int]) -> float:
