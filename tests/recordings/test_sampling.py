@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagnet.recordings.sampling import median_step, spread_rows
+from lagnet.recordings.sampling import is_even, median_step, spread_rows
 
 
 def test_gaps_and_jitter_do_not_change_the_usual_step() -> None:
@@ -33,3 +33,10 @@ def test_rows_are_spread_from_the_first_to_the_last(n: int, most: int) -> None:
 
 def test_no_row_of_an_empty_table_is_taken() -> None:
     assert spread_rows(0, 5).size == 0
+
+
+@pytest.mark.parametrize(("jitter", "even"), [(0.0, True), (1e-9, True), (1e-3, False)])
+def test_a_clock_is_even_but_for_rounding(jitter: float, even: bool) -> None:
+    time = 5.0 + 0.01 * np.arange(50)
+    time[20] += 0.01 * jitter
+    assert is_even(time) == even

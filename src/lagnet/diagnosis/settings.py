@@ -44,21 +44,17 @@ class DecisionLimits:
         """Nats that a hypothesis with so many coefficients and shape parameters must gain."""
         return self.complexity_penalty + self.penalty_per_coefficient * (coefficients + shapes)
 
-    def least_power(self, torque: float | np.ndarray, nominal: float | np.ndarray) -> np.ndarray:
-        """max(t² P_τ, r P_nominal), shape of the arguments: power that an effect must explain to be claimed [N² m²].
-
-        Args:
-            torque, nominal: power of a joint's torque about its mean, and of what the nominal model leaves.
-        """
-        return np.maximum(self.least_torque**2 * torque, self.least_of_residual * nominal)
-
     def least_power_of(
         self, law: Effect, torque: float | np.ndarray, nominal: float | np.ndarray, left: float | np.ndarray
     ) -> np.ndarray:
-        """The same of one law; not more than what all effects leave, where the law's torque is like no load's [N² m²].
+        """max(t² P_τ, r P_nominal), shape of the arguments: power that an effect must explain to be claimed [N² m²].
 
-        The least power guards against bodies, and shares of the load, that stand for a part of a larger cause of their
-        kind. An effect of another form that explains more than all that is left stands for nothing else.
+        It guards against bodies, and shares of the load, that stand for a part of a larger cause of their kind. A law
+        whose torque is like no load's stands for nothing else where it explains more than all that is left.
+
+        Args:
+            torque, nominal: power of a joint's torque about its mean, and of what the nominal model leaves.
+            left: power of what all effects leave.
         """
-        least = self.least_power(torque, nominal)
+        least = np.maximum(self.least_torque**2 * torque, self.least_of_residual * nominal)
         return np.minimum(least, left) if law.is_like_no_load else least

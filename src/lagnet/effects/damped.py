@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
+from lagnet.recordings.sampling import is_even
 from lagnet.types import Samples
-
-EVEN = 1e-6  # of a step: by so much steps of an even clock differ, by rounding
 
 
 def damped(time: Samples, signal: np.ndarray, constant: float) -> np.ndarray:
@@ -26,7 +25,7 @@ def damped(time: Samples, signal: np.ndarray, constant: float) -> np.ndarray:
     now, before = 1.0 - ratio * (1.0 - fade), ratio * (1.0 - fade) - fade  # weights of x_k and x_(k-1)
     push = now * signal[1:] + before * signal[:-1]
     start = float(signal[0])
-    if np.ptp(steps) <= EVEN * steps[0]:
+    if is_even(time):
         rest, _ = lfilter([1.0], [1.0, -fade[0]], push, zi=[fade[0] * start])
         return np.concatenate([[start], rest])
     out = np.empty(len(time))

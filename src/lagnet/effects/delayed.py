@@ -6,9 +6,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import spline_filter1d
 
+from lagnet.recordings.sampling import is_even
 from lagnet.types import Samples
 
-UNEVEN = 1e-6  # of a step: by so much steps of an even clock differ, by rounding
 FEWEST = 4  # samples of a cubic spline
 BEYOND = 20  # samples of the signal turned about its ends, which set the spline there; farther ones do not count
 
@@ -26,11 +26,9 @@ def earlier(time: Samples, signal: np.ndarray, delay: float) -> np.ndarray:
     """
     if len(time) < FEWEST:
         return np.interp(time - delay, time, signal)
-    steps = np.diff(time)
-    step = (time[-1] - time[0]) / len(steps)
-    if np.max(np.abs(steps - step)) > UNEVEN * step:
+    if not is_even(time):
         return CubicSpline(time, signal)(np.clip(time - delay, time[0], time[-1]))
-    return _shifted(signal, delay / step)
+    return _shifted(signal, delay * (len(time) - 1) / (time[-1] - time[0]))
 
 
 def _shifted(x: np.ndarray, samples: float) -> np.ndarray:

@@ -32,6 +32,8 @@ def found_below_limits(
 ) -> tuple[NamedEffect, ...]:
     """Selected torque of single joints which a limit makes explain much more than the selection does without one.
 
+    What an earlier round found stays: beside its limit next to nothing is left that would show it again.
+
     Args:
         known: bodies that were found.
         power: shape (dof,), mean square residual of the selection, 0 where it is no more than noise [N² m²].
@@ -42,7 +44,8 @@ def found_below_limits(
         own = [] if level is None else _of_joint(problem, library, found, joint, level / WIDE)
         if own and level is not None and _left(summary, joint, level, (*known, *own)) < ENOUGH * power[joint]:
             out.extend(own)
-    return tuple(out)
+    fresh = {e.joint for e in out}
+    return (*(e for e in problem.below_limits if e.joint not in fresh), *out)
 
 
 def _left(motion: Motion, joint: int, level: float, effects: Sequence[NamedEffect]) -> float:

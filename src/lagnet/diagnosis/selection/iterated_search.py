@@ -42,7 +42,7 @@ def search(problem: Problem, noise: np.ndarray) -> tuple[Problem, NormalEquation
         problem: just posed.
         noise: shape (dof,), noise floor [N m].
     """
-    problem = replace(problem, known=mounting_of(problem))
+    problem = replace(problem, known=mounting_of(problem), below_limits=())
     rounds = [(problem, *_search_once(problem, noise))]
     for _ in range(ROUNDS):
         problem, equations, found = rounds[-1]

@@ -53,7 +53,7 @@ class JointElasticity(Transmission):
         return {"D": 0.0, **super().with_names_of_today(held)}
 
     def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
-        return np.array([1.0 / values["K"], values.get("D", 0.0) / values["K"]])
+        return np.array([1.0 / values["K"], _constant(values)])
 
     def from_coordinates(self, coordinates: np.ndarray) -> Values:
         compliance, constant = map(float, coordinates)
@@ -64,11 +64,16 @@ class JointElasticity(Transmission):
         return np.zeros(2), np.array([1e3, LONGEST])
 
     def shift(self, motion: Motion, joint: int, values: Mapping[str, float]) -> Shift:
-        constant = values.get("D", 0.0) / values["K"]
-        return _lag(motion, damped(motion.time, carried_torque(motion, joint), constant) / values["K"])
+        wound = damped(motion.time, carried_torque(motion, joint), _constant(values))
+        return _lag(motion, wound / values["K"])
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_motion(motion, joint)
+
+
+def _constant(values: Mapping[str, float]) -> float:
+    """Time constant D/K [s], 0 without a damper."""
+    return values.get("D", 0.0) / values["K"]
 
 
 def _lag(motion: Motion, bend: np.ndarray) -> Shift:
