@@ -13,6 +13,7 @@ from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.estimation.special_case import with_special_cases
 from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.exchanged_bodies import with_links_alike, with_real_bodies
+from lagnet.diagnosis.exchanged_gains import without_wide_gains
 from lagnet.diagnosis.free_bodies import (
     are_scaled_widely,
     beside_free_bodies,
@@ -64,7 +65,7 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     left = apply_rules([r for r in given.rules if not r.after_refit], first)
     candidate, rejected = left.candidate, left.rejected
     if problem.given is None:
-        candidate = with_real_bodies(candidate)
+        candidate = without_wide_gains(with_real_bodies(candidate))
         beside = _beside_free_links(candidate, given)
         if beside is not None:
             return beside

@@ -26,13 +26,18 @@ def exchange_gains(equations: NormalEquations, found: Selection) -> Selection:
     Where a gain returns beside the bodies, these are not what the gains stood for: a part of the torque alone is split
     another way.
     """
+    return max([found, *without_gains(equations, found)], key=lambda one: one.score)
+
+
+def without_gains(equations: NormalEquations, found: Selection) -> list[Selection]:
+    """Selections in the place of one with several gains of one sign, each with one more arm-wide hypothesis or none."""
     gains = _gains(equations, found)
     if len(gains) < 2 or len(set(np.sign(gains))) > 1:
-        return found
+        return []
     bare = _without_gains(equations, found)
     starts = [bare.arm_wide, *((*bare.arm_wide, i) for i in _instead(equations, bare))]
     tried = [_improved(equations, bare, arm_wide) for arm_wide in starts if arm_wide]
-    return max([found, *(one for one in tried if not _gains(equations, one))], key=lambda one: one.score)
+    return [one for one in tried if not _gains(equations, one)]
 
 
 def _gains(equations: NormalEquations, found: Selection) -> list[float]:
