@@ -207,10 +207,11 @@ def _trees_predict(candidate: Candidate, joint: int, least: float) -> bool:
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     residual, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
     counts = np.concatenate([p.counts for p in problem.fit])[:, joint]
-    if is_predictable(seen, residual, counts, fresh, test, seed, least):
+    if is_predictable(seen, residual, counts, fresh, test, joint, seed, least):
         return True
     one, other = every_second_part(len(counts))
-    return is_predictable(seen.only(one), residual[one], counts[one], seen.only(other), residual[other], seed, least)
+    first, second = seen.only(one), seen.only(other)
+    return is_predictable(first, residual[one], counts[one], second, residual[other], joint, seed, least)
 
 
 def _power(x: np.ndarray) -> np.ndarray:

@@ -141,7 +141,7 @@ def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
 def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
     (residual, valid), (test, test_valid) = after.fit, after.holdout
     seen, truth = residual[:, joint], test[:, joint] * test_valid[:, joint]
-    predictability = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, seed)
+    predictability = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, joint, seed)
     shape = None
     if predictability.depends_on:
         signals = (after.seen.only(valid[:, joint]), after.unseen.only(test_valid[:, joint]))
