@@ -49,7 +49,8 @@ class Diagnosis:
         evidence: the curves behind the verdict, for reports.
         fit_recordings, holdout_recordings: what was used for what.
         conditioned_holdout: the held-out recordings on their even clock.
-        ends_of: for each held-out recording the index of the fitted one that it is the end of, None for another.
+        ends_of: for each held-out recording the index of the fitted one that it is the end of, or whose load it
+            carries; None for another.
         state: all that its steps found out.
         holdout_torques: torque of each layer at every held-out sample.
     """
@@ -132,6 +133,7 @@ def diagnose(
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     state = with_misspecification(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))
     state = against_given(state)
+    ends_of = tuple(state.origins.get(n) for n in range(len(held)))
     correction = correct(state, held, ends_of)
     evidence = collect_report_data(state, fit_on, held, correction.model)
     verdict = compose_verdict(state, fit_on, held)

@@ -224,10 +224,10 @@ def _with_differing_recordings(
     state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]
 ) -> DiagnosisState | None:
     """Persistent effects beside a load of its own in each recording that differs; None where there is no such load."""
-    problem = state.problem
-    found = differing_recordings(problem, scan)
+    found = differing_recordings(state.problem, scan)
     if found is None:
         return None
+    problem = found.problem
     clean = again(without_loads(problem, found.loads))
     whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
     parts = _separated(replace(clean, problem=whole), found.scan)

@@ -83,6 +83,11 @@ class DiagnosisState:
         return (*self.refit.effects, *(p.effect for p in self.transients))
 
     @property
+    def origins(self) -> dict[int, int | None]:
+        """By held-out recording, the fitted one that it is the end of or whose load it carries; None for another."""
+        return {p.recording: p.origin for p in self.problem.holdout}
+
+    @property
     def lasting_effects(self) -> tuple[NamedEffect, ...]:
         """What lasts: beside it events are looked for. A cause is there, whatever its name."""
         return self.supposed or self.refit.effects

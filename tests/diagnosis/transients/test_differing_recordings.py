@@ -6,6 +6,12 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.differing_recordings import with_the_same_loads
+from lagnet.effects.inertia.payload import INERTIA
+from lagnet.models.corrected.named_effects import NamedEffect
+from lagnet.recordings.conditioning.condition import condition
 
 pytestmark = pytest.mark.slow
 
@@ -57,3 +63,39 @@ def test_a_held_out_recording_that_contradicts_the_fitted_one_is_told(plant, arm
     fitted, other = (carrying(plant, arm, c, seed) for seed, c in zip((15, 16), CENTRES, strict=True))
     result = diagnose([fitted], arm, [other])
     assert any("differs from the fitted recordings from beginning to end" in line for line in result.verdict.warnings)
+
+
+@pytest.fixture(scope="module")
+def apart(plant, arm):
+    """Held out are recordings of their own, first with the second mounting."""
+    fitted, held = (
+        [carrying(plant, arm, c, n) for n, c in zip(ns, CENTRES, strict=True)] for ns in ((17, 18), (19, 20))
+    )
+    return diagnose(fitted, arm, held[::-1])
+
+
+def test_a_held_out_recording_carries_the_load_of_the_fitted_one_that_explains_it(apart, names) -> None:
+    assert names(apart) == {("payload", None)}
+    assert apart.ends_of == (1, 0)
+    assert all(fit.nmse_named < 0.01 * max(fit.nmse_nominal, 0.05) for fit in apart.verdict.fit)
+
+
+def test_the_load_that_it_carries_is_told(apart) -> None:
+    assert [line for line in apart.verdict.warnings if "it carries the load of" in line] == [
+        "held-out recording 1: held out, it carries the load of recording 2",
+        "held-out recording 2: held out, it carries the load of recording 1",
+    ]
+
+
+def test_a_held_out_recording_without_a_load_carries_none(plant, arm) -> None:
+    fitted = condition([carrying(plant, arm, c, n) for n, c in zip((17, 18), CENTRES, strict=True)], None)
+    held = condition([carrying(plant, arm, CENTRES[1], 20), plant().record(21)], fitted.bandwidth)
+    problem = pose_problem(arm, fitted, held)
+    moments = dict.fromkeys(INERTIA, 0.0) | dict.fromkeys(("Ixx", "Iyy", "Izz"), 0.004)
+    loads = [
+        NamedEffect("payload", None, {"m": MASS, **dict(zip(("cx", "cy", "cz"), c, strict=True)), **moments}, (0, 1), n)
+        for n, c in enumerate(CENTRES)
+    ]
+    scan = Scan((), np.ones(arm.n_dof), 1.0)
+    found = with_the_same_loads(problem, loads, scan)
+    assert {(p.recording, p.origin) for p in found.holdout} == {(0, 1), (1, None)}

@@ -1,12 +1,13 @@
 """Recordings that differ: a load of its own in each, where events are no exception but fill whole recordings.
 
 One load cannot explain recordings in which it was mounted differently: what fits them all is a compromise, and what is
-left of it fills each recording from its first sample to its last.
+left of it fills each recording from its first sample to its last. A recording that is held out carries the load of the
+fitted one that explains it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,10 +28,12 @@ class Differing:
     """Loads of single recordings.
 
     Args:
+        problem: each held-out recording as a part of the fitted one whose load it carries.
         loads: one for each recording that differs, from its first sample to the last that is held out.
         scan: the intervals that they were found in.
     """
 
+    problem: Problem
     loads: tuple[NamedEffect, ...]
     scan: Scan
 
@@ -54,9 +57,29 @@ def differing_recordings(problem: Problem, scan: Scan) -> Differing | None:
     filled = replace(scan, events=whole)
     found = separate(problem, (), np.sqrt(scan.power), filled)
     loads = tuple(t.effect for t in found.transients if effect_named(t.effect.effect).is_body)
+    problem = with_the_same_loads(problem, loads, scan)
     if len(loads) < len(whole) or _error(problem, loads, scan) > FALLS * _error(problem, (), scan):
         return None
-    return Differing(tuple(to_the_end(problem, e) for e in loads), filled)
+    return Differing(problem, tuple(to_the_end(problem, e) for e in loads), filled)
+
+
+def with_the_same_loads(problem: Problem, loads: Sequence[NamedEffect], scan: Scan) -> Problem:
+    """The problem with each held-out recording as a part of the fitted one whose load halves its squared error."""
+    origins: dict[int, int | None] = {}
+    for recording in sorted({p.recording for p in problem.holdout if p.origin is None}):
+        alone = replace(problem, holdout=tuple(p for p in problem.holdout if p.recording == recording))
+        tried = {e.recording: _error(_as_parts(alone, {recording: e.recording}), loads, scan) for e in loads}
+        best = min(tried, key=lambda origin: tried[origin], default=None)
+        if best is not None and tried[best] < FALLS * _error(alone, (), scan):
+            origins[recording] = best
+    return _as_parts(problem, origins)
+
+
+def _as_parts(problem: Problem, origins: Mapping[int, int | None]) -> Problem:
+    """The problem with held-out recordings as parts of fitted ones, by their numbers."""
+    return replace(
+        problem, holdout=tuple(replace(p, origin=origins.get(p.recording, p.origin)) for p in problem.holdout)
+    )
 
 
 def without_loads(problem: Problem, loads: Sequence[NamedEffect]) -> Problem:
@@ -78,7 +101,7 @@ def lasting_loads(problem: Problem, transients: Sequence[Transient]) -> tuple[Tr
 def to_the_end(problem: Problem, effect: NamedEffect) -> NamedEffect:
     """The effect from the first sample of its recording to the last, the held-out end included."""
     own = [*_fitted(problem, effect.recording), *(p for p in problem.holdout if p.origin == effect.recording)]
-    return replace(effect, interval=(float(own[0].time[0]), float(max(p.time[-1] for p in own))))
+    return replace(effect, interval=(float(min(p.time[0] for p in own)), float(max(p.time[-1] for p in own))))
 
 
 def _fitted(problem: Problem, recording: int | None) -> list[Segment]:

@@ -24,13 +24,14 @@ MOSTLY = 0.5  # of the held-out residual power in events, above which the remain
 def transient_effects(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[EffectFound, ...]:
     """The named effects that act on an interval of one fitted recording."""
     half = 0.5 / state.problem.rate  # an edge lies between the last sample outside and the first inside
-    return tuple(_effect(t, _name(fit, t.effect.recording or 0), half, _fills(t, fit)) for t in state.transients)
+    return tuple(_effect(t, _name(fit, t.effect.recording or 0), half, _fills(state, t, fit)) for t in state.transients)
 
 
-def _fills(transient: Transient, fit: Sequence[Recording]) -> bool:
-    """Whether the interval of a transient is the whole of its fitted recording."""
+def _fills(state: DiagnosisState, transient: Transient, fit: Sequence[Recording]) -> bool:
+    """Whether the interval of a transient is the whole of its fitted recording, to a sample of the even clock."""
     (start, end), time = transient.effect.interval or (0.0, 0.0), fit[transient.effect.recording or 0].time
-    return bool(start <= time[0] and time[-1] <= end)
+    step = 1.0 / state.problem.rate
+    return bool(start <= time[0] + step and time[-1] - step <= end)
 
 
 def _effect(transient: Transient, recording: str, half: float, throughout: bool) -> EffectFound:
@@ -52,12 +53,12 @@ def words_on_time(state: DiagnosisState, fit: Sequence[Recording], held: Sequenc
     """A line on every interval that has no name, and on every friction that drifts."""
     events = [_event_words(s, held if s.held_out else fit) for s in state.events]
     drifts = [_drifting(d, state.problem.joints[d.joint], _name(fit, d.recording)) for d in state.drifts]
-    return (*_differences(state, fit), *events, *drifts)
+    return (*_differences(state, fit), *_loads_of_the_held(state, fit, held), *events, *drifts)
 
 
 def _differences(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[str, ...]:
     """A line where recordings hold loads of their own: mass and centre in each."""
-    own = [t.effect for t in state.transients if _fills(t, fit) and t.effect.effect == Payload.name]
+    own = [t.effect for t in state.transients if _fills(state, t, fit) and t.effect.effect == Payload.name]
     if not own:
         return ()
     loads = [
@@ -66,6 +67,13 @@ def _differences(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[str, 
         for e in own
     ]
     return (f"the recordings differ from each other: the arm carries {'; '.join(loads)}",)
+
+
+def _loads_of_the_held(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
+    """A line on every held-out recording that carries the load of a fitted one, and is not its end."""
+    loaded = {t.effect.recording for t in state.transients if _fills(state, t, fit)}
+    pairs = [(_name(held, n, True), _name(fit, m)) for n, m in state.origins.items() if m is not None and m in loaded]
+    return tuple(f"{one}: held out, it carries the load of {other}" for one, other in pairs if one != other)
 
 
 def _drifting(drift: Drift, joint: str, recording: str) -> str:
