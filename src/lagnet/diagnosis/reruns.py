@@ -224,7 +224,7 @@ def _with_differing_recordings(
     state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]
 ) -> DiagnosisState | None:
     """Persistent effects beside a load of its own in each recording that differs; None where there is no such load."""
-    found = differing_recordings(state.problem, scan)
+    found = differing_recordings(state.problem, scan, state.lasting_effects)
     if found is None:
         return None
     problem = found.problem

@@ -21,14 +21,14 @@ CENTRES = np.array([[0.03, 0.0, 0.15], [0.03, 0.1, -0.12]])  # [m], in the frame
 APART = 0.03  # [m] by which a centre may be off
 
 
-def carrying(plant, arm, centre, seed: int):
-    """A recording of the arm with the load, while its model has none."""
+def carrying(plant, arm, centre, seed: int, *laws):
+    """A recording of the arm with the load, and laws, while its model has none."""
     loaded = arm.with_payload(MASS, centre, 0.004 * np.eye(3))
 
     def law(q, v, a, body):
         return loaded.inverse_dynamics(q, v, a) - arm.inverse_dynamics(q, v, a)
 
-    return plant(law).record(seed)
+    return plant(law, *laws).record(seed)
 
 
 @pytest.fixture(scope="module")
@@ -99,3 +99,18 @@ def test_a_held_out_recording_without_a_load_carries_none(plant, arm) -> None:
     scan = Scan((), np.ones(arm.n_dof), 1.0)
     found = with_the_same_loads(problem, loads, scan)
     assert {(p.recording, p.origin) for p in found.holdout} == {(0, 1), (1, None)}
+
+
+def rubbing(q, v, a, body) -> np.ndarray:
+    """Viscous and Coulomb friction at every joint, more than the loads weigh."""
+    return 4.0 * v + 6.0 * np.tanh(v / 1e-2)
+
+
+def test_each_has_its_load_where_every_joint_rubs(plant, arm) -> None:
+    found = diagnose([carrying(plant, arm, c, n, rubbing) for n, c in zip((22, 23), CENTRES, strict=True)], arm)
+    loads = [e for e in found.effects if e.effect == "payload"]
+    assert len({e.recording for e in loads}) == 2
+    assert [e.value("m") for e in loads] == pytest.approx([MASS, MASS], rel=NEAR)
+    assert sum("friction" in e.effect for e in found.effects) == 2 * arm.n_dof
+    assert len(found.effects) == 2 * arm.n_dof + 2
+    assert all(fit.nmse_named < 0.01 for fit in found.verdict.fit)

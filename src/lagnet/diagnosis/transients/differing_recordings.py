@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -38,13 +39,17 @@ class Differing:
     scan: Scan
 
 
-def differing_recordings(problem: Problem, scan: Scan) -> Differing | None:
+def differing_recordings(problem: Problem, scan: Scan, effects: Sequence[NamedEffect]) -> Differing | None:
     """A load for each fitted recording that an event fills; None where there is one recording only, or no such load.
+
+    Nor where two of the loads are one: what these recordings share is not how they differ.
 
     Args:
         problem: with all samples valid.
         scan: events beside the effects that were found on all recordings together.
+        effects: these; friction and whatever else acts on the motion of a joint is there beside the loads.
     """
+    beside = tuple(e for e in effects if effect_named(e.effect).of_motion_alone)
     whole = tuple(
         replace(e, start=first, end=last)
         for e in scan.events
@@ -55,22 +60,43 @@ def differing_recordings(problem: Problem, scan: Scan) -> Differing | None:
     if len({p.recording for p in problem.fit}) < 2 or not whole:
         return None
     filled = replace(scan, events=whole)
-    found = separate(problem, (), np.sqrt(scan.power), filled)
-    loads = tuple(t.effect for t in found.transients if effect_named(t.effect.effect).is_body)
-    problem = with_the_same_loads(problem, loads, scan)
-    if len(loads) < len(whole) or _error(problem, loads, scan) > FALLS * _error(problem, (), scan):
+    found = separate(problem, beside, np.sqrt(scan.power), filled)
+    own_loads = [t for t in found.transients if effect_named(t.effect.effect).is_body]
+    if any(are_alike(one, other) for one, other in combinations(own_loads, 2)):
+        return None
+    loads = tuple(t.effect for t in own_loads)
+    beside = found.refit.effects
+    problem = with_the_same_loads(problem, loads, scan, beside)
+    error, before = (_error(problem, some, scan, beside) for some in (loads, ()))
+    if len(loads) < len(whole) or error > FALLS * before:
         return None
     return Differing(problem, tuple(to_the_end(problem, e) for e in loads), filled)
 
 
-def with_the_same_loads(problem: Problem, loads: Sequence[NamedEffect], scan: Scan) -> Problem:
-    """The problem with each held-out recording as a part of the fitted one whose load halves its squared error."""
+def are_alike(one: Transient, other: Transient) -> bool:
+    """|p − p'| ≤ √(h² + h'²) for mass and centre of two loads with 95 % intervals p ± h."""
+
+    def apart(name: str) -> bool:
+        pair = [(t.effect.values[name], np.ptp(t.intervals[name]) / 2.0) for t in (one, other)]
+        return bool(abs(pair[0][0] - pair[1][0]) > np.hypot(pair[0][1], pair[1][1]))
+
+    return not any(apart(name) for name in ("m", "cx", "cy", "cz"))
+
+
+def with_the_same_loads(
+    problem: Problem, loads: Sequence[NamedEffect], scan: Scan, beside: Sequence[NamedEffect] = ()
+) -> Problem:
+    """The problem with each held-out recording as a part of the fitted one whose load halves its squared error.
+
+    Args:
+        beside: effects that act in all recordings.
+    """
     origins: dict[int, int | None] = {}
     for recording in sorted({p.recording for p in problem.holdout if p.origin is None}):
         alone = replace(problem, holdout=tuple(p for p in problem.holdout if p.recording == recording))
-        tried = {e.recording: _error(_as_parts(alone, {recording: e.recording}), loads, scan) for e in loads}
+        tried = {e.recording: _error(_as_parts(alone, {recording: e.recording}), loads, scan, beside) for e in loads}
         best = min(tried, key=lambda origin: tried[origin], default=None)
-        if best is not None and tried[best] < FALLS * _error(alone, (), scan):
+        if best is not None and tried[best] < FALLS * _error(alone, (), scan, beside):
             origins[recording] = best
     return _as_parts(problem, origins)
 
@@ -116,8 +142,8 @@ def _less(problem: Problem, piece: Segment, loads: Sequence[NamedEffect]) -> Seg
     return replace(piece, tau=piece.tau - (torque_with(piece.motion(problem), loads) - piece.load))
 
 
-def _error(problem: Problem, loads: Sequence[NamedEffect], scan: Scan) -> float:
+def _error(problem: Problem, loads: Sequence[NamedEffect], scan: Scan, beside: Sequence[NamedEffect]) -> float:
     """Σ r² / σ² on held-out samples."""
-    lasting = [to_the_end(problem, e) for e in loads]
-    residuals = (problem.reduce(p, p.tau - torque_with(p.motion(problem), lasting)) * p.counts for p in problem.holdout)
+    effects = [*beside, *(to_the_end(problem, e) for e in loads)]
+    residuals = (problem.reduce(p, p.tau - torque_with(p.motion(problem), effects)) * p.counts for p in problem.holdout)
     return float(sum(np.sum(r**2 / scan.power) for r in residuals))

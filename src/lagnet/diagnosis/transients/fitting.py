@@ -17,6 +17,7 @@ from lagnet.effects.external.contact_force import FORCE, POINT, ContactForce
 from lagnet.effects.inertia.payload import INERTIA, Payload
 from lagnet.models.corrected.named_effects import NamedEffect
 
+BEYOND = 2.0  # samples by which an edge may lie outside of its recording
 RADIUS = 0.03  # [m] of gyration from which the inertia of a load is fitted
 
 
@@ -108,7 +109,7 @@ def _whole(near: Problem, series: RecordingResidual, event: EventInterval) -> tu
 
     An edge on the very last sample would have a derivative of nothing but rounding, and go anywhere.
     """
-    beyond = 2.0 / near.rate
+    beyond = BEYOND / near.rate
     start = near.fit[0].time[0] - beyond if event.start <= series.time[0] else event.start
     end = near.fit[-1].time[-1] + beyond if event.end >= series.time[-1] else event.end
     return float(start), float(end)

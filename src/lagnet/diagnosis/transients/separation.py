@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.misspecification import Intervals
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.problem.intervals import EventInterval, set_aside
 from lagnet.diagnosis.problem.problem import OVERSAMPLING, Problem
 from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
-from lagnet.diagnosis.transients.fitting import EventFit, fit_event
+from lagnet.diagnosis.transients.fitting import BEYOND, EventFit, fit_event
 from lagnet.diagnosis.transients.holdout_continuation import carry_on
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
@@ -53,8 +54,9 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
     together = refit(set_aside(problem, unnamed), (*persistent, *(f.effect for _, f in good)), sigma)
     n = len(persistent)
     found = []
-    for effect, intervals, (event, fit) in zip(together.effects[n:], together.intervals[n:], good, strict=True):
+    for fitted, intervals, (event, fit) in zip(together.effects[n:], together.intervals[n:], good, strict=True):
         wide = _widened(intervals, _caution(fit, scan.inflation), problem.rate)
+        effect, wide = within_recording(problem, fitted, wide)
         if effect_named(effect.effect).is_determined(wide) and is_resolved(effect, problem.bandwidth):
             found.append(Transient(effect, wide, fit, 0.0))
         elif event.gain > UNNAMED:
@@ -63,6 +65,15 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
     shares = _shares(problem, of_persistent.effects, [p.effect for p in found])
     shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]
     return Separated(of_persistent, *carry_on(problem, shared, unnamed))
+
+
+def within_recording(problem: Problem, effect: NamedEffect, intervals: Intervals) -> tuple[NamedEffect, Intervals]:
+    """The effect with edges at most a little beyond its recording: what lies further out is no estimate."""
+    times = [t for p in problem.fit if p.recording == effect.recording for t in (p.time[0], p.time[-1])]
+    beyond, edges = BEYOND / problem.rate, effect.interval or (min(times), max(times))
+    start, end = (float(t) for t in np.clip(edges, min(times) - beyond, max(times) + beyond))
+    moved = {name: (t, t) for name, t, was in zip(EDGES, (start, end), edges, strict=True) if t != was}
+    return replace(effect, interval=(start, end)), {**intervals, **moved}
 
 
 def _convinces(fit: EventFit) -> bool:
@@ -93,7 +104,7 @@ def _bursts(pairs: Sequence[tuple[EventInterval, EventFit]]) -> list[EventInterv
     return [s for s, j in local if joints.count(j) > 1]
 
 
-def _widened(intervals: dict[str, tuple[float, float]], factor: float, rate: float) -> dict[str, tuple[float, float]]:
+def _widened(intervals: Intervals, factor: float, rate: float) -> Intervals:
     """Wider intervals, where residuals are correlated in time and an event has too few blocks to show it.
 
     The first sample inside may come up to one sample after the start, and the last one before the end.
