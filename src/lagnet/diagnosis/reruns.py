@@ -23,11 +23,18 @@ from lagnet.diagnosis.problem.problem import Problem, blurred_speed
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
-from lagnet.diagnosis.transients.differing_recordings import differing_recordings, lasting_loads, without_loads
+from lagnet.diagnosis.transients.differing_recordings import (
+    Differing,
+    differing_groups,
+    differing_recordings,
+    lasting_loads,
+    without_loads,
+)
 from lagnet.diagnosis.transients.separation import separate
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.named_effects import torque_with
+from lagnet.types import is_robot_model
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
 MUCH = 0.05  # of a joint's mismatch: if names leave so much, links that differ may explain it
@@ -187,6 +194,18 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         state: of a run on all samples.
         again: another run on the same recordings with some samples set aside.
     """
+    found = _with_events_apart(state, again)
+    if not is_puzzled(found) or not is_robot_model(state.problem.nominal):
+        return found
+    scan = detect_events(state.problem, state.lasting_effects, state.noise)
+    loaded = _beside_loads(state, differing_groups(state.problem, scan, state.lasting_effects), again)
+    if loaded is None:
+        return found
+    before, after = (log_error(one.after, one.noise) for one in (found, loaded))
+    return loaded if after < before - BETTER else found
+
+
+def _with_events_apart(state: DiagnosisState, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
     problem = state.problem
     scan = detect_events(problem, state.lasting_effects, state.noise, SUSPECT)
     events, clean = scan.events, state
@@ -194,7 +213,8 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         if not events:
             return state
         if too_much(problem, set_aside(problem, events)):
-            differing, events = _with_differing_recordings(state, scan, again), _leading(problem, events)
+            own = differing_recordings(problem, scan, state.lasting_effects)
+            differing, events = _beside_loads(state, own, again), _leading(problem, events)
             if differing is not None or not events:
                 return differing or replace(state, events=scan.events)
         masked = set_aside(problem, events)
@@ -220,11 +240,10 @@ def _leading(problem: Problem, events: tuple[EventInterval, ...]) -> tuple[Event
     return () if too_much(problem, set_aside(problem, strongest)) else strongest
 
 
-def _with_differing_recordings(
-    state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]
+def _beside_loads(
+    state: DiagnosisState, found: Differing | None, again: Callable[[Problem], DiagnosisState]
 ) -> DiagnosisState | None:
-    """Persistent effects beside a load of its own in each recording that differs; None where there is no such load."""
-    found = differing_recordings(state.problem, scan, state.lasting_effects)
+    """Persistent effects beside the loads of single recordings; None where there are none."""
     if found is None:
         return None
     problem = found.problem

@@ -114,3 +114,13 @@ def test_each_has_its_load_where_every_joint_rubs(plant, arm) -> None:
     assert sum("friction" in e.effect for e in found.effects) == 2 * arm.n_dof
     assert len(found.effects) == 2 * arm.n_dof + 2
     assert all(fit.nmse_named < 0.01 for fit in found.verdict.fit)
+
+
+def test_of_recordings_in_groups_each_has_the_load_of_its_group(plant, arm) -> None:
+    """One without a load, two with the first mounting, two with the second: none stands out from the others."""
+    groups = [(n, c) for c, ns in zip(CENTRES, ((31, 32), (33, 34)), strict=True) for n in ns]
+    found = diagnose([plant().record(30), *(carrying(plant, arm, c, n) for n, c in groups)], arm)
+    assert {e.effect for e in found.effects} == {"payload"}
+    masses = {e.recording: e.value("m") for e in found.effects}
+    assert masses == {f"recording {k}": pytest.approx(MASS, rel=NEAR) for k in (2, 3, 4, 5)}
+    assert all(fit.nmse_named < 0.01 for fit in found.verdict.fit)

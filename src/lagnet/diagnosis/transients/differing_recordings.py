@@ -13,14 +13,16 @@ from itertools import combinations
 
 import numpy as np
 
-from lagnet.diagnosis.problem.intervals import MOST
+from lagnet.diagnosis.problem.intervals import MOST, EventInterval
 from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
 from lagnet.diagnosis.transients.separation import separate
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
+LOOKS = 2  # fits of the loads; the second knows what the first leaves
 FALLS = 0.5  # of the squared held-out error, joints weighted by their noise, that must remain at most
 
 
@@ -49,28 +51,61 @@ def differing_recordings(problem: Problem, scan: Scan, effects: Sequence[NamedEf
         scan: events beside the effects that were found on all recordings together.
         effects: these; friction and whatever else acts on the motion of a joint is there beside the loads.
     """
-    beside = tuple(e for e in effects if effect_named(e.effect).of_motion_alone)
-    whole = tuple(
-        replace(e, start=first, end=last)
+    whole = [
+        one
         for e in scan.events
         if not e.held_out
-        for first, last in [_span(_fitted(problem, e.recording))]
-        if e.end - e.start > MOST * (last - first)
-    )
+        for one in [_whole(problem, e.recording, e.gain)]
+        if e.end - e.start > MOST * (one.end - one.start)
+    ]
+    found, of_all = _with_own_loads(problem, whole, scan, effects)
+    alike = any(are_alike(one, other) for one, other in combinations(found, 2))
+    return None if alike or len(found) < len(whole) else of_all
+
+
+def differing_groups(problem: Problem, scan: Scan, effects: Sequence[NamedEffect]) -> Differing | None:
+    """A load for each fitted recording that has one; None where none has, or all have the same.
+
+    Of recordings in groups, such as some without a tool and some with it, none stands out. Arguments as above.
+    """
+    recordings = sorted({p.recording for p in problem.fit})
+    found, of_all = _with_own_loads(problem, [_whole(problem, n, 0.0) for n in recordings], scan, effects)
+    same = len(found) == len(recordings) and all(are_alike(one, other) for one, other in combinations(found, 2))
+    return None if same else of_all
+
+
+def _whole(problem: Problem, recording: int, gain: float) -> EventInterval:
+    pieces = _fitted(problem, recording)
+    return EventInterval(recording, False, float(pieces[0].time[0]), float(pieces[-1].time[-1]), gain)
+
+
+def _with_own_loads(
+    problem: Problem, whole: Sequence[EventInterval], scan: Scan, effects: Sequence[NamedEffect]
+) -> tuple[list[Transient], Differing | None]:
+    """The loads of whole recordings, and what they explain; None where half of the held-out error or more is left."""
     if len({p.recording for p in problem.fit}) < 2 or not whole:
-        return None
-    filled = replace(scan, events=whole)
-    found = separate(problem, beside, np.sqrt(scan.power), filled)
-    own_loads = [t for t in found.transients if effect_named(t.effect.effect).is_body]
-    if any(are_alike(one, other) for one, other in combinations(own_loads, 2)):
-        return None
-    loads = tuple(t.effect for t in own_loads)
-    beside = found.refit.effects
+        return [], None
+    beside = tuple(e for e in effects if effect_named(e.effect).of_motion_alone)
+    scan = replace(scan, events=tuple(whole))
+    for _ in range(LOOKS):  # what is usual where most recordings have a load is not the noise that tells loads apart
+        parts = separate(problem, beside, np.sqrt(scan.power), scan)
+        beside = parts.refit.effects
+        scan = replace(scan, power=_left(problem, [*beside, *(t.effect for t in parts.transients)], scan))
+    found = [t for t in parts.transients if effect_named(t.effect.effect).is_body]
+    loads = tuple(t.effect for t in found)
     problem = with_the_same_loads(problem, loads, scan, beside)
     error, before = (_error(problem, some, scan, beside) for some in (loads, ()))
-    if len(loads) < len(whole) or error > FALLS * before:
-        return None
-    return Differing(problem, tuple(to_the_end(problem, e) for e in loads), filled)
+    if not loads or error > FALLS * before:
+        return found, None
+    return found, Differing(problem, tuple(to_the_end(problem, e) for e in loads), scan)
+
+
+def _left(problem: Problem, effects: Sequence[NamedEffect], scan: Scan) -> np.ndarray:
+    """Mean r² that effects leave of the fitted motion, never nothing and at most what is usual, shape (dof,)."""
+    series = residual_by_recording(problem, problem.fit, effects)
+    power = sum(np.sum((s.residual * s.valid) ** 2, axis=0) for s in series)
+    mean = power / np.maximum(1, sum(s.valid.sum(axis=0) for s in series))
+    return np.clip(mean, (1e-9 * problem.scale) ** 2, np.maximum(scan.power, 1e-300))
 
 
 def are_alike(one: Transient, other: Transient) -> bool:
@@ -132,10 +167,6 @@ def to_the_end(problem: Problem, effect: NamedEffect) -> NamedEffect:
 
 def _fitted(problem: Problem, recording: int | None) -> list[Segment]:
     return [p for p in problem.fit if p.recording == recording]
-
-
-def _span(pieces: Sequence[Segment]) -> tuple[float, float]:
-    return float(pieces[0].time[0]), float(pieces[-1].time[-1])
 
 
 def _less(problem: Problem, piece: Segment, loads: Sequence[NamedEffect]) -> Segment:

@@ -72,8 +72,13 @@ def _differences(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[str, 
 def _loads_of_the_held(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
     """A line on every held-out recording that carries the load of a fitted one, and is not its end."""
     loaded = {t.effect.recording for t in state.transients if _fills(state, t, fit)}
-    pairs = [(_name(held, n, True), _name(fit, m)) for n, m in state.origins.items() if m is not None and m in loaded]
-    return tuple(f"{one}: held out, it carries the load of {other}" for one, other in pairs if one != other)
+    origins = ((n, m) for n, m in state.origins.items() if m is not None and m in loaded)
+    pairs = [(n, m) for n, m in origins if not _is_end(held[n], fit[m])]
+    return tuple(f"{_name(held, n, True)}: held out, it carries the load of {_name(fit, m)}" for n, m in pairs)
+
+
+def _is_end(held: Recording, fitted: Recording) -> bool:
+    return held.path == fitted.path and bool(held.time[0] > fitted.time[-1])
 
 
 def _drifting(drift: Drift, joint: str, recording: str) -> str:
