@@ -17,12 +17,11 @@ from lagnet.diagnosis.problem.intervals import MOST, EventInterval
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
-from lagnet.diagnosis.transients.separation import separate
+from lagnet.diagnosis.transients.separation import Separated, separate
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
-LOOKS = 2  # fits of the loads; the second knows what the first leaves
 FALLS = 0.5  # of the squared held-out error, joints weighted by their noise, that must remain at most
 
 
@@ -87,11 +86,11 @@ def _with_own_loads(
         return [], None
     beside = tuple(e for e in effects if effect_named(e.effect).of_motion_alone)
     scan = replace(scan, events=tuple(whole))
-    for _ in range(LOOKS):  # what is usual where most recordings have a load is not the noise that tells loads apart
-        parts = separate(problem, beside, np.sqrt(scan.power), scan)
-        beside = parts.refit.effects
-        scan = replace(scan, power=_left(problem, [*beside, *(t.effect for t in parts.transients)], scan))
-    found = [t for t in parts.transients if effect_named(t.effect.effect).is_body]
+    parts = separate(problem, beside, np.sqrt(scan.power), scan)
+    if len(_loads_of(parts)) < len(whole):  # where many recordings have a load, what is usual is not the noise
+        scan = replace(scan, power=_left(problem, parts, scan))
+        parts = separate(problem, parts.refit.effects, np.sqrt(scan.power), scan)
+    found, beside = _loads_of(parts), parts.refit.effects
     loads = tuple(t.effect for t in found)
     problem = with_the_same_loads(problem, loads, scan, beside)
     error, before = (_error(problem, some, scan, beside) for some in (loads, ()))
@@ -100,8 +99,13 @@ def _with_own_loads(
     return found, Differing(problem, tuple(to_the_end(problem, e) for e in loads), scan)
 
 
-def _left(problem: Problem, effects: Sequence[NamedEffect], scan: Scan) -> np.ndarray:
-    """Mean r² that effects leave of the fitted motion, never nothing and at most what is usual, shape (dof,)."""
+def _loads_of(parts: Separated) -> list[Transient]:
+    return [t for t in parts.transients if effect_named(t.effect.effect).is_body]
+
+
+def _left(problem: Problem, parts: Separated, scan: Scan) -> np.ndarray:
+    """Mean r² that is left of the fitted motion, never nothing and at most what is usual, shape (dof,) [N² m²]."""
+    effects = (*parts.refit.effects, *(t.effect for t in parts.transients))
     series = residual_by_recording(problem, problem.fit, effects)
     power = sum(np.sum((s.residual * s.valid) ** 2, axis=0) for s in series)
     mean = power / np.maximum(1, sum(s.valid.sum(axis=0) for s in series))
