@@ -7,8 +7,9 @@ import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.problem.problem import pose_problem
+from lagnet.diagnosis.transients import differing_recordings as groups
 from lagnet.diagnosis.transients.detection import Scan
-from lagnet.diagnosis.transients.differing_recordings import with_the_same_loads
+from lagnet.diagnosis.transients.differing_recordings import differing_groups, with_the_same_loads
 from lagnet.effects.inertia.payload import INERTIA
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import condition
@@ -99,6 +100,17 @@ def test_a_held_out_recording_without_a_load_carries_none(plant, arm) -> None:
     scan = Scan((), np.ones(arm.n_dof), 1.0)
     found = with_the_same_loads(problem, loads, scan)
     assert {(p.recording, p.origin) for p in found.holdout} == {(0, 1), (1, None)}
+
+
+def test_groups_are_looked_for_among_few_recordings_only(plant, arm, monkeypatch) -> None:
+    fitted = condition([plant().record(22), carrying(plant, arm, CENTRES[0], 23)], None)
+    problem = pose_problem(arm, fitted, condition([carrying(plant, arm, CENTRES[0], 24)], fitted.bandwidth))
+    scan = Scan((), np.ones(arm.n_dof), 1.0)
+    found = differing_groups(problem, scan, ())
+    assert found is not None
+    assert [e.recording for e in found.loads] == [1]
+    monkeypatch.setattr(groups, "MANY", 1)
+    assert differing_groups(problem, scan, ()) is None
 
 
 def rubbing(q, v, a, body) -> np.ndarray:

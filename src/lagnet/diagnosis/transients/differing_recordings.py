@@ -22,6 +22,7 @@ from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
+MANY = 12  # recordings, beyond which groups are not looked for: each load has twelve parameters, fitted together
 FALLS = 0.5  # of the squared held-out error, joints weighted by their noise, that must remain at most
 
 
@@ -68,6 +69,8 @@ def differing_groups(problem: Problem, scan: Scan, effects: Sequence[NamedEffect
     Of recordings in groups, such as some without a tool and some with it, none stands out. Arguments as above.
     """
     recordings = sorted({p.recording for p in problem.fit})
+    if len(recordings) > MANY:
+        return None
     found, of_all = _with_own_loads(problem, [_whole(problem, n, 0.0) for n in recordings], scan, effects)
     same = len(found) == len(recordings) and all(are_alike(one, other) for one, other in combinations(found, 2))
     return None if same else of_all
