@@ -194,10 +194,10 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
         state: of a run on all samples.
         again: another run on the same recordings with some samples set aside.
     """
-    found = _with_events_apart(state, again)
+    scan = detect_events(state.problem, state.lasting_effects, state.noise, SUSPECT)
+    found = _with_events_apart(state, scan, again)
     if not is_puzzled(found) or not is_robot_model(state.problem.nominal):
         return found
-    scan = detect_events(state.problem, state.lasting_effects, state.noise)
     loaded = _beside_loads(state, differing_groups(state.problem, scan, state.lasting_effects), again)
     if loaded is None:
         return found
@@ -205,10 +205,8 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
     return loaded if after < before - BETTER else found
 
 
-def _with_events_apart(state: DiagnosisState, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
-    problem = state.problem
-    scan = detect_events(problem, state.lasting_effects, state.noise, SUSPECT)
-    events, clean = scan.events, state
+def _with_events_apart(state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
+    problem, events, clean = state.problem, scan.events, state
     for _ in range(LOOKS):
         if not events:
             return state

@@ -7,7 +7,7 @@ import pytest
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.problem.problem import pose_problem
-from lagnet.diagnosis.transients import differing_recordings as groups
+from lagnet.diagnosis.transients import differing_recordings
 from lagnet.diagnosis.transients.detection import Scan
 from lagnet.diagnosis.transients.differing_recordings import differing_groups, with_the_same_loads
 from lagnet.effects.inertia.payload import INERTIA
@@ -109,7 +109,7 @@ def test_groups_are_looked_for_among_few_recordings_only(plant, arm, monkeypatch
     found = differing_groups(problem, scan, ())
     assert found is not None
     assert [e.recording for e in found.loads] == [1]
-    monkeypatch.setattr(groups, "MANY", 1)
+    monkeypatch.setattr(differing_recordings, "MANY", 1)
     assert differing_groups(problem, scan, ()) is None
 
 

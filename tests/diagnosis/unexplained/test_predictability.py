@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.diagnosis.posed import pose
 
-from lagnet.diagnosis.unexplained.predictability import predictability_of, signals_of
+from lagnet.diagnosis.unexplained.predictability import Examples, predictability_of, signals_of
 
 
 @pytest.fixture(scope="module")
@@ -19,11 +19,15 @@ def column(signals, name):
     return signals.table[:, signals.names.index(name)]
 
 
+def asked(signals, seen: np.ndarray, unseen: np.ndarray, joint: int):
+    """The predictable share where all samples count."""
+    examples = Examples(joint, signals[0], seen, np.ones(seen.size, dtype=bool), signals[1], unseen)
+    return predictability_of(examples, 0)
+
+
 def test_a_residual_of_two_joints_speeds_is_predicted_from_them(signals) -> None:
     residuals = [np.sign(column(s, "v_0")) + np.tanh(column(s, "v_2")) for s in signals]
-    found = predictability_of(
-        signals[0], residuals[0], np.ones(len(residuals[0]), dtype=bool), signals[1], residuals[1], 0, 0
-    )
+    found = asked(signals, residuals[0], residuals[1], joint=0)
     assert found.share > 0.6
     assert set(found.depends_on[:2]) <= {"v_0", "v_2", "history_0", "history_2"}
 
@@ -31,7 +35,7 @@ def test_a_residual_of_two_joints_speeds_is_predicted_from_them(signals) -> None
 def test_noise_is_not_predicted(signals) -> None:
     rng = np.random.default_rng(1)
     seen, unseen = (rng.standard_normal(len(s.table)) for s in signals)
-    found = predictability_of(signals[0], seen, np.ones(seen.size, dtype=bool), signals[1], unseen, 0, 0)
+    found = asked(signals, seen, unseen, joint=0)
     assert found.share < 0.05
     assert found.depends_on == ()
 
@@ -39,7 +43,8 @@ def test_noise_is_not_predicted(signals) -> None:
 def test_samples_that_do_not_count_teach_nothing(signals) -> None:
     residuals = [column(s, "v_1") for s in signals]
     nothing = np.zeros(residuals[0].size, dtype=bool)
-    assert predictability_of(signals[0], residuals[0], nothing, signals[1], residuals[1], 1, 0).share == 0.0
+    examples = Examples(1, signals[0], residuals[0], nothing, signals[1], residuals[1])
+    assert predictability_of(examples, 0).share == 0.0
 
 
 def test_a_strut_that_rubs_is_predicted_from_its_own_joint(signals) -> None:
@@ -52,6 +57,6 @@ def test_a_strut_that_rubs_is_predicted_from_its_own_joint(signals) -> None:
     seen, unseen = map(rubbing, signals)
     time = column(signals[0], "time")
     disturbed = seen + seen.std() * np.sin(2.0 * np.pi * time / np.ptp(time))
-    found = predictability_of(signals[0], disturbed, np.ones(seen.size, dtype=bool), signals[1], unseen, 1, 0)
+    found = asked(signals, disturbed, unseen, joint=1)
     assert found.share > 0.7
     assert found.depends_on == ("q_1", "v_1")

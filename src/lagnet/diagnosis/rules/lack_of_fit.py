@@ -24,7 +24,7 @@ from lagnet.diagnosis.nominal.learned_error import Name, may_be_its_error, was_l
 from lagnet.diagnosis.rules.candidate import Candidate, Part
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.selection.holdout_gain import HoldoutGain
-from lagnet.diagnosis.unexplained.predictability import is_predictable, signals_of
+from lagnet.diagnosis.unexplained.predictability import Examples, is_predictable, signals_of
 from lagnet.diagnosis.unexplained.remainder import every_second_part
 from lagnet.percent import percent
 
@@ -207,11 +207,11 @@ def _trees_predict(candidate: Candidate, joint: int, least: float) -> bool:
     seen, fresh = signals_of(problem, problem.fit), signals_of(problem, problem.holdout)
     residual, test = (candidate.residual(part)[:, joint] for part in ("fit", "holdout"))
     counts = np.concatenate([p.counts for p in problem.fit])[:, joint]
-    if is_predictable(seen, residual, counts, fresh, test, joint, seed, least):
+    if is_predictable(Examples(joint, seen, residual, counts, fresh, test), seed, least):
         return True
     one, other = every_second_part(len(counts))
-    first, second = seen.only(one), seen.only(other)
-    return is_predictable(first, residual[one], counts[one], second, residual[other], joint, seed, least)
+    halves = Examples(joint, seen.only(one), residual[one], counts[one], seen.only(other), residual[other])
+    return is_predictable(halves, seed, least)
 
 
 def _power(x: np.ndarray) -> np.ndarray:

@@ -34,7 +34,7 @@ def without_gains(equations: NormalEquations, found: Selection) -> list[Selectio
     gains = _gains(equations, found)
     if len(gains) < 2 or len(set(np.sign(gains))) > 1:
         return []
-    bare = _without_gains(equations, found)
+    bare = _bare(equations, found)
     starts = [bare.arm_wide, *((*bare.arm_wide, i) for i in _instead(equations, bare))]
     tried = [_improved(equations, bare, arm_wide) for arm_wide in starts if arm_wide]
     return [one for one in tried if not _gains(equations, one)]
@@ -46,7 +46,7 @@ def _gains(equations: NormalEquations, found: Selection) -> list[float]:
     return [float(found.fit.coefficients[i][0]) for i in chosen]
 
 
-def _without_gains(equations: NormalEquations, found: Selection) -> Selection:
+def _bare(equations: NormalEquations, found: Selection) -> Selection:
     """The selection without the gains of single joints, the others fitted anew."""
 
     def others(own: Sequence[int]) -> tuple[int, ...]:

@@ -6,7 +6,7 @@ given dozens of signals may learn to tell recordings apart, which predicts nothi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -80,89 +80,86 @@ def _time(pieces: tuple[Segment, ...]) -> np.ndarray:
     return np.concatenate([p.time[p.keep] for p in pieces])
 
 
-def predictability_of(
-    signals: Signals,
-    residual: np.ndarray,
-    counts: np.ndarray,
-    unseen: Signals,
-    unseen_residual: np.ndarray,
-    joint: int,
-    seed: int,
-) -> Predictability:
-    """Boosted trees or a few plain terms, whichever does better, on the fit samples, judged on the held-out ones.
+@dataclass(frozen=True, eq=False)
+class Examples:
+    """The residual of one joint on motion to learn from and on motion to be judged on.
 
     Args:
-        residual, unseen_residual: shape (n,), (m,), one joint [N m].
-        counts: shape (n,), samples of the fit that count.
         joint: the joint.
+        seen, unseen: signals of the two motions.
+        residual, truth: shape (n,), (m,), the residual on each [N m].
+        counts: shape (n,), samples to learn from that count.
     """
+
+    joint: int
+    seen: Signals
+    residual: np.ndarray
+    counts: np.ndarray
+    unseen: Signals
+    truth: np.ndarray
+
+    @property
+    def power(self) -> float:
+        """Mean square residual to be predicted [N² m²]."""
+        return float(np.mean(self.truth**2))
+
+    def of_own_joint(self) -> Examples:
+        """The same with the position and speed of the joint alone."""
+        return replace(self, seen=self.seen.of_joint(self.joint), unseen=self.unseen.of_joint(self.joint))
+
+    def learned(self, rng: np.random.Generator) -> Examples | None:
+        """With some samples to learn from, at random among those that count; None where these are too few."""
+        rows = np.sort(rng.permutation(np.flatnonzero(self.counts))[:MOST])
+        if rows.size < FEWEST or not self.power > 0:
+            return None
+        return replace(self, seen=self.seen.only(rows), residual=self.residual[rows], counts=self.counts[rows])
+
+
+def predictability_of(examples: Examples, seed: int) -> Predictability:
+    """Boosted trees or a few plain terms, whichever does better, on the fit samples, judged on the held-out ones."""
     rng = np.random.default_rng(seed)
-    rows = _rows(counts, rng)
-    power = float(np.mean(unseen_residual**2))
-    if rows.size < FEWEST or not power > 0:
+    few = examples.learned(rng)
+    if few is None:
         return Predictability(0.0, ())
-    y = residual[rows]
-    pairs = ((signals, unseen), (signals.of_joint(joint), unseen.of_joint(joint)))
     with threadpool_limits(1):
-        found = [_by_trees(seen.table[rows], y, new, unseen_residual, power, seed, rng) for seen, new in pairs]
-    plain, terms = sparse_share(signals.names, signals.table[rows], y, unseen.table, unseen_residual)
+        found = [_by_trees(one, seed, rng) for one in (few, few.of_own_joint())]
+    plain, terms = _by_plain_terms(few)
     if plain > LEAST_EFFECT:
         found = [Predictability(plain, terms[:STRONGEST]), *found]
     return max(reversed(found), key=lambda one: one.share)
 
 
-def _by_trees(
-    x: np.ndarray,
-    y: np.ndarray,
-    unseen: Signals,
-    truth: np.ndarray,
-    power: float,
-    seed: int,
-    rng: np.random.Generator,
-) -> Predictability:
-    trees = _trees(x, y, seed)
-    error = _error(trees, unseen.table, truth)
+def is_predictable(examples: Examples, seed: int, least: float) -> bool:
+    """Whether `predictability_of` tells a share above the least one, found with as little work as that takes."""
+    few = examples.learned(np.random.default_rng(seed))
+    if few is None:
+        return False
+    if _by_plain_terms(few)[0] > least:
+        return True
+    with threadpool_limits(1):
+        grown = ((_trees(one, seed), one) for one in (few.of_own_joint(), few))
+        return any(_error(t, one.unseen.table, one.truth) < (1.0 - least) * few.power for t, one in grown)
+
+
+def _by_plain_terms(few: Examples) -> tuple[float, tuple[str, ...]]:
+    return sparse_share(few.seen.names, few.seen.table, few.residual, few.unseen.table, few.truth)
+
+
+def _by_trees(few: Examples, seed: int, rng: np.random.Generator) -> Predictability:
+    trees, power = _trees(few, seed), few.power
+    error = _error(trees, few.unseen.table, few.truth)
     share = float(np.clip(1.0 - error / power, 0.0, 1.0))
-    names = _strongest(trees, unseen, truth, error, power, rng) if share > LEAST_EFFECT else ()
+    names = _strongest(trees, few.unseen, few.truth, error, power, rng) if share > LEAST_EFFECT else ()
     return Predictability(share, names)
 
 
-def is_predictable(
-    signals: Signals,
-    residual: np.ndarray,
-    counts: np.ndarray,
-    unseen: Signals,
-    unseen_residual: np.ndarray,
-    joint: int,
-    seed: int,
-    least: float,
-) -> bool:
-    """Whether `predictability_of` tells a share above the least one, found with as little work as that takes."""
-    rows = _rows(counts, np.random.default_rng(seed))
-    power = float(np.mean(unseen_residual**2))
-    if rows.size < FEWEST or not power > 0:
-        return False
-    y = residual[rows]
-    if sparse_share(signals.names, signals.table[rows], y, unseen.table, unseen_residual)[0] > least:
-        return True
-    pairs = ((signals.of_joint(joint), unseen.of_joint(joint)), (signals, unseen))
-    with threadpool_limits(1):
-        trees = ((_trees(seen.table[rows], y, seed), new) for seen, new in pairs)
-        return any(_error(one, new.table, unseen_residual) < (1.0 - least) * power for one, new in trees)
-
-
-def _rows(counts: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Samples that trees are grown on, at random among those that count."""
-    return np.sort(rng.permutation(np.flatnonzero(counts))[:MOST])
-
-
-def _trees(table: np.ndarray, residual: np.ndarray, seed: int) -> HistGradientBoostingRegressor:
+def _trees(few: Examples, seed: int) -> HistGradientBoostingRegressor:
     from sklearn.ensemble import HistGradientBoostingRegressor  # slow to import, and used where something is left
 
     trees = HistGradientBoostingRegressor(
         max_iter=60, max_leaf_nodes=12, learning_rate=0.12, min_samples_leaf=20, random_state=seed
     )
-    return trees.fit(table, residual)
+    return trees.fit(few.seen.table, few.residual)
 
 
 def _error(trees: HistGradientBoostingRegressor, table: np.ndarray, truth: np.ndarray) -> float:

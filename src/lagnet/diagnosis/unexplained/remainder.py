@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.problem.residuals import power_of, stacked
 from lagnet.diagnosis.unexplained.formula import RemainderShape, find_shape
-from lagnet.diagnosis.unexplained.predictability import Predictability, Signals, predictability_of, signals_of
+from lagnet.diagnosis.unexplained.predictability import Examples, Predictability, Signals, predictability_of, signals_of
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 HALVES = 6  # parts of the fitted motion that predict as many others
@@ -141,7 +141,8 @@ def every_second_part(n: int) -> tuple[np.ndarray, np.ndarray]:
 def _look_at(after: Remainder, joint: int, slow: np.ndarray, seed: int) -> tuple[Predictability, RemainderShape | None]:
     (residual, valid), (test, test_valid) = after.fit, after.holdout
     seen, truth = residual[:, joint], test[:, joint] * test_valid[:, joint]
-    predictability = predictability_of(after.seen, seen, valid[:, joint], after.unseen, truth, joint, seed)
+    examples = Examples(joint, after.seen, seen, valid[:, joint], after.unseen, truth)
+    predictability = predictability_of(examples, seed)
     shape = None
     if predictability.depends_on:
         signals = (after.seen.only(valid[:, joint]), after.unseen.only(test_valid[:, joint]))
