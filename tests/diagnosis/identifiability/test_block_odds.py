@@ -38,6 +38,22 @@ def test_one_block_alone_decides_nothing(errors) -> None:
     assert abs(log10_odds([1e6], here, there, [0.0])) < 1.3
 
 
+def test_many_times_larger_errors_outweigh_a_rival_that_is_simpler_in_three_blocks() -> None:
+    here, there = np.array([[1.0, 1.2, 0.9]]), np.array([[90.0, 310.0, 180.0]])
+    alone = log10_odds([80.0], here, there, [0.0])
+    assert 0.5 < alone < 4.0  # three blocks are sure of no more, whatever they say
+    assert 0.5 < log10_odds([80.0], here, there, [0.0], -9.0) < alone
+    assert log10_odds([80.0], here, there, [0.0], 9.0) > alone
+
+
+def test_where_blocks_tell_nothing_the_simpler_one_is_preferred_by_its_penalty(errors) -> None:
+    here = errors[0]
+    assert log10_odds([500.0], here, here, [0.0], 2.0) == pytest.approx(2.0 / np.log(10.0))
+    assert log10_odds([500.0], here[:, :1], here[:, :1], [0.0], 2.0) == pytest.approx(2.0 / np.log(10.0))
+    scattered = log10_odds([500.0], here, here + errors[1] - errors[1].mean(), [0.0], 2.0)
+    assert scattered < 2.0 / np.log(10.0)  # and by less where they contradict each other
+
+
 def test_scattering_blocks_give_the_odds_of_their_mean_over_its_error() -> None:
     rng = np.random.default_rng(3)
     z = np.array([_z_and_odds(rng) for _ in range(50)])

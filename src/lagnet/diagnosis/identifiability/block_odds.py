@@ -1,12 +1,13 @@
 """Odds that one selection predicts blocks of motion better than another, from the scatter between blocks.
 
-With D = Σ_j n_j / (2 g_j) ln(E'_j / E_j) the difference of log evidence and u_b the influence of block b on it,
+With D = Σ_j n_j / (2 g_j) ln(E'_j / E_j) + P' − P the difference of log evidence, P the penalties on complexity, and
+u_b the influence of block b on it,
 
 > z = D / √(B / (B − 1) Σ_b u_b²),  u_b = Σ_j n_j / (2 g_j) (E'_jb / E'_j − E_jb / E_j)
 
-is the test of Vuong (Econometrica 57, 1989) for two inexact models. The odds are those of a Student variable of
-B − 1 degrees of freedom to lie below z, and at most exp D: where something structured is always left, a sum over
-many samples is surer than the recordings are.
+is the test of Vuong (Econometrica 57, 1989) for two inexact models, corrected for their complexity as there. The odds
+are those of a Student variable of B − 1 degrees of freedom to lie below z, and at most exp D: where something
+structured is always left, a sum over many samples is surer than the recordings are.
 """
 
 from __future__ import annotations
@@ -37,24 +38,27 @@ def held_out_errors(blocks: np.ndarray, folds: np.ndarray, columns: np.ndarray) 
     return errors_in_blocks(blocks, columns, theta)
 
 
-def log10_odds(pieces: ArrayLike, here: np.ndarray, there: np.ndarray, floors: ArrayLike) -> float:
+def log10_odds(
+    pieces: ArrayLike, here: np.ndarray, there: np.ndarray, floors: ArrayLike, simpler: float = 0.0
+) -> float:
     """log10 odds of the selection with errors `here` over the one with errors `there`.
 
     Args:
         pieces: n_j / g_j, independent pieces of evidence of each joint.
         here, there: shape (J, B), squared errors by joint and block [N² m²].
         floors: least squared error of each joint that counts [N² m²].
+        simpler: P' − P, penalty of the one with errors `there` less that of the selection.
     """
     weight = 0.5 * np.asarray(pieces)
     sums = [np.maximum(e.sum(axis=1), np.maximum(floors, 1e-300)) for e in (here, there)]
     here_lost, there_lost = (bool(np.isinf(s).any()) for s in sums)  # one that a fold leaves undetermined
     if here_lost or there_lost:
         return GREATEST * (there_lost - here_lost)
-    gain = float(np.sum(weight * np.log(sums[1] / sums[0])))
+    gain = float(np.sum(weight * np.log(sums[1] / sums[0]))) + simpler
     influence = weight @ (there / sums[1][:, None] - here / sums[0][:, None])
     felt = int(np.sum(np.any(here + there > 0.0, axis=0)))
     if felt < 2 or gain == 0.0:
-        return 0.0
+        return simpler / LN10
     spread = float(np.sqrt(felt / (felt - 1) * np.sum(influence**2)))
     z = abs(gain) / max(spread, 1e-12 * abs(gain))
     told = (student.logcdf(z, felt - 1) - student.logsf(z, felt - 1)) / LN10

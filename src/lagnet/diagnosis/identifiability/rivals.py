@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lagnet.diagnosis.identifiability.block_odds import LN10, held_out_errors, log10_odds
+from lagnet.diagnosis.identifiability.block_odds import held_out_errors, log10_odds
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, unseen_block_errors
 from lagnet.diagnosis.selection.arm_search import Selection, total_score, views_of
 from lagnet.diagnosis.selection.joint_search import gains_over
@@ -74,7 +74,7 @@ def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -
     system = view.system
     here, there = (held_out_errors(system.blocks, system.folds, system.columns(s))[None] for s in (own, other))
     simpler = sum(view.equations.penalties[list(other)]) - sum(view.equations.penalties[list(own)])
-    return log10_odds([view.pieces], here, there, [view.least_error]) + float(simpler) / LN10
+    return log10_odds([view.pieces], here, there, [view.least_error], float(simpler))
 
 
 def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
@@ -155,10 +155,10 @@ def _arm_wide_odds(equations: NormalEquations, found: Selection, others: tuple[i
     chosen = (*others, *(i for own in found.local for i in own))
     sigma = found.sigma(equations)
     here, there = (unseen_block_errors(equations, s, sigma) for s in (found.indices, chosen))
-    penalties = [float(equations.penalties[list(s)].sum()) for s in (found.indices, chosen)]
+    own, other = (float(equations.penalties[list(s)].sum()) for s in (found.indices, chosen))
     pieces = equations.samples / found.scales.inefficiency
     floors = np.maximum(1e-3 * found.scales.noise_power, 1e-12 * found.scales.torque_power)
-    return log10_odds(pieces, here, there, floors) + (penalties[1] - penalties[0]) / LN10
+    return log10_odds(pieces, here, there, floors, other - own)
 
 
 def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:
