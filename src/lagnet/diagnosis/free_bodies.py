@@ -26,6 +26,7 @@ from lagnet.diagnosis.unexplained.remainder import Remainder, remainder_of
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, torque_along
+from lagnet.models.corrected.motion_terms import Rest
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.types import InverseDynamics, RobotModel, is_robot_model
@@ -100,7 +101,7 @@ def beside_free_bodies(problem: Problem, noise: np.ndarray, found: Identified | 
         return None
     if found is None or found.layer.bodies is None:
         return None
-    layer = _with_all_that_links_can_have(problem, found)
+    layer = with_all_that_links_can_have(problem, found)
     if layer.bodies is None or not explains(problem, problem.fit, (), layer, noise):
         return None
     robot: RobotModel = problem.nominal
@@ -109,7 +110,7 @@ def beside_free_bodies(problem: Problem, noise: np.ndarray, found: Identified | 
     return replace(with_nominal(problem, with_changed_bodies(robot, layer.bodies)), given=problem.nominal)
 
 
-def _with_all_that_links_can_have(problem: Problem, found: Identified) -> IdentifiedLayer:
+def with_all_that_links_can_have(problem: Problem, found: Identified) -> IdentifiedLayer:
     """The layer without offsets and rotors that are zero within their intervals beside all links."""
     weights = dict(zip(found.layer.terms, found.layer.weights, strict=True))
     open_ = [
@@ -123,10 +124,16 @@ def _with_all_that_links_can_have(problem: Problem, found: Identified) -> Identi
 
 
 def with_changed_bodies(model: Any, change: np.ndarray) -> Any:
-    """A model whose links differ by ten parameters each, shape (dof, 10); a corrected one keeps what it corrects."""
-    if isinstance(model, CorrectedModel):
-        return replace(model, nominal=with_changed_bodies(model.nominal, change))
-    return model.with_inertial_parameters(model.inertial_parameters() + change)
+    """A model whose links differ by ten parameters each, shape (dof, 10); a corrected one keeps what it corrects.
+
+    The bodies of a corrected model are real with all its changes: one more is added to these, since the nominal
+    bodies need not be real with it alone.
+    """
+    if not isinstance(model, CorrectedModel):
+        return model.with_inertial_parameters(model.inertial_parameters() + change)
+    before = model.layer or IdentifiedLayer(None, (), np.zeros(0), Rest(model.slow, np.zeros(model.n_dof)))
+    layer = replace(before, bodies=change if before.bodies is None else before.bodies + change)
+    return replace(model, identified=layer) if model.instead is None else replace(model, instead=layer)
 
 
 def explains(
@@ -156,9 +163,12 @@ def with_nominal(problem: Problem, nominal: InverseDynamics) -> Problem:
     return replace(problem, nominal=nominal, fit=fit, holdout=holdout, known=())
 
 
+def as_given(problem: Problem) -> Problem:
+    """The problem against the model as it was given."""
+    return problem if problem.given is None else replace(with_nominal(problem, problem.given), given=None)
+
+
 def against_given(state: DiagnosisState) -> DiagnosisState:
     """The results held against the model as it was given; what remains stays that beside free links."""
     problem = state.problem
-    if problem.given is None:
-        return state
-    return replace(state, problem=replace(with_nominal(problem, problem.given), given=None), judged=problem)
+    return state if problem.given is None else replace(state, problem=as_given(problem), judged=problem)
