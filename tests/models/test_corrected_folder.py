@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ import pytest
 import lagnet
 from lagnet.errors import LagnetError, ModelError
 from lagnet.models.corrected.folder import FILE, load_corrected, save_corrected
-from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.corrected.identified import IdentifiedLayer
+from lagnet.models.corrected.model import LAYERS, CorrectedModel, NamedEffect
+from lagnet.models.corrected.motion_terms import Rest
+from lagnet.models.corrected.remainder.learned import LearnedRemainder
 from lagnet.models.files.loading import load_any
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 from lagnet.rigid_body.robot import load_description
@@ -31,9 +35,10 @@ EFFECTS = (
 
 @pytest.fixture
 def model():
-    arm, left = random_arm(3, seed=5, kinds=("revolute",)), np.array([0.1, 0.0, 0.2])
-    straight = np.array([True, False, True])
-    return CorrectedModel(arm, EFFECTS, np.array([0.01, 0.02, 0.03]), straight=straight, left=left)
+    arm, straight = random_arm(3, seed=5, kinds=("revolute",)), np.array([True, False, True])
+    left = np.array([[0.1, 0.0, 0.2], [0.1, 0.0, 0.1], [0.0, 0.0, 0.1]])
+    errors: dict[str, np.ndarray] = dict(zip(LAYERS, left, strict=True))
+    return CorrectedModel(arm, EFFECTS, np.array([0.01, 0.02, 0.03]), straight=straight, errors=errors)
 
 
 @pytest.fixture
@@ -76,11 +81,36 @@ def test_a_model_read_back_is_the_same_model(model, folder) -> None:
     assert back.joints == model.joints
     assert (back.kind, back.source) == ("corrected", str(folder))
     assert len(back.sha256) == 64
-    np.testing.assert_array_equal(back.left, model.left)
+    assert back.errors is not None
+    for layer in LAYERS:
+        np.testing.assert_array_equal(back.errors[layer], model.errors[layer])
     np.testing.assert_array_equal(back.straight, model.straight)
     q, v, a = samples()
     np.testing.assert_allclose(back.inverse_dynamics(q, v, a), model.inverse_dynamics(q, v, a), rtol=EXACT, atol=EXACT)
     np.testing.assert_allclose(back.mass_matrix(q), model.mass_matrix(q), rtol=EXACT, atol=EXACT)
+
+
+def test_a_model_knows_what_the_layers_that_it_has_leave(model) -> None:
+    identified = IdentifiedLayer(np.zeros((3, 10)), (), np.zeros(0), Rest(model.slow, np.zeros(3)))
+    learned = replace(model, identified=identified, remainder=LearnedRemainder((), model.slow))
+    for layer in LAYERS:
+        np.testing.assert_array_equal(learned.with_layers(layer).left, model.errors[layer])
+    assert replace(model, errors=None).left is None
+
+
+def test_an_older_folder_tells_what_names_leave_and_no_more(model, folder) -> None:
+    rewrite(folder, format=6, left=[0.1, 0.0, 0.2])
+    back = load_any(folder)
+    assert back.errors is not None
+    for layer in LAYERS:
+        np.testing.assert_array_equal(back.errors[layer], model.errors["named"])
+
+
+@pytest.mark.parametrize("left", [{"named": [0.1, 0.0, 0.2]}, {layer: None for layer in LAYERS}, [0.1], "0.1"])
+def test_errors_that_are_not_of_every_layer_and_joint_are_damage(folder, left) -> None:
+    rewrite(folder, left=left)
+    with pytest.raises(ModelError, match=r"damaged|joints are not"):
+        load_any(folder)
 
 
 def test_the_folder_of_a_diagnosis_is_found_from_outside(folder) -> None:

@@ -17,7 +17,7 @@ def _named_layer(old: Callable) -> Callable:
 
     def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[int | None]) -> Correction:
         torques = holdout_torques(state.corrected, held, state.holdout, ends_of)
-        return Correction(state.corrected, None, torques, holdout_errors(torques, state.holdout))
+        return Correction(state.corrected, None, torques, holdout_errors(torques, state.holdout).nmse)
 
     return correct
 

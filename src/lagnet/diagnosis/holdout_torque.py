@@ -41,8 +41,31 @@ def holdout_torques(
     return tuple(out)
 
 
-def holdout_errors(torques: Sequence[HoldoutTorque], conditioned: Conditioned) -> dict[str, np.ndarray]:
-    """nMSE of each layer and joint below the bandwidth: power of the error over the variance of the torque, (dof,)."""
+@dataclass(frozen=True, eq=False)
+class HoldoutErrors:
+    """Errors on held-out recordings below the bandwidth, by layer.
+
+    Args:
+        powers: shape (dof,), mean square error of each layer [(N m)²].
+        variance: shape (dof,), of the measured torque [(N m)²].
+    """
+
+    powers: dict[str, np.ndarray]
+    variance: np.ndarray
+
+    @property
+    def nmse(self) -> dict[str, np.ndarray]:
+        """Power of the error over the variance of the torque, shape (dof,) by layer."""
+        return {kind: power / self.variance for kind, power in self.powers.items()}
+
+    def beyond(self, noise: np.ndarray) -> dict[str, np.ndarray]:
+        """√max(mean r² − σ², 0) of each layer of the correction, shape (dof,); `noise` is σ, shape (dof,) [N m]."""
+        kinds = {"named": "named", "identified": "identified", "full": "corrected"}
+        return {layer: np.sqrt(np.maximum(self.powers[kind] - noise**2, 0.0)) for layer, kind in kinds.items()}
+
+
+def holdout_errors(torques: Sequence[HoldoutTorque], conditioned: Conditioned) -> HoldoutErrors:
+    """Errors of each layer, as modelled, against held-out torque."""
     errors: dict[str, list[np.ndarray]] = {kind: [] for kind in KINDS}
     measured = []
     for index, torque in enumerate(torques):
@@ -55,7 +78,8 @@ def holdout_errors(torques: Sequence[HoldoutTorque], conditioned: Conditioned) -
                 error = torque.recording.torque[rows] - torque.layers[kind][rows]
                 errors[kind].append(_filtered(error, torque, rows, conditioned))
     variance = np.maximum(np.concatenate(measured).var(axis=0), 1e-300)
-    return {kind: np.mean(np.concatenate(parts) ** 2, axis=0) / variance for kind, parts in errors.items()}
+    powers = {kind: np.mean(np.concatenate(parts) ** 2, axis=0) for kind, parts in errors.items()}
+    return HoldoutErrors(powers, variance)
 
 
 def _filtered(x: np.ndarray, torque: HoldoutTorque, rows: slice, conditioned: Conditioned) -> np.ndarray:

@@ -50,7 +50,8 @@ def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[
         learned = learn_remainder(state.problem, model, state.seed, floor=significant)
     model = replace(model, remainder=learned)
     torques = holdout_torques(model, held, state.holdout, ends_of)
-    return Correction(model, found, torques, holdout_errors(torques, state.holdout))
+    errors = holdout_errors(torques, state.holdout)
+    return Correction(replace(model, errors=errors.beyond(state.sensor_noise)), found, torques, errors.nmse)
 
 
 def _layer_of(found: Identified | None) -> IdentifiedLayer | None:

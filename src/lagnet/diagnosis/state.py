@@ -127,15 +127,7 @@ class DiagnosisState:
         return np.sqrt(np.maximum(self.noise**2 - np.square(known), 0.0))
 
     @property
-    def missed(self) -> np.ndarray:
-        """√max(mean r² − σ², 0) on held-out motion: error of the corrected model beyond noise, shape (dof,) [N m]."""
-        power = np.array([joint.power for joint in self.sizes])
-        return np.sqrt(np.maximum(power - self.noise**2, 0.0))
-
-    @property
     def corrected(self) -> CorrectedModel:
         """The nominal model with the named effects."""
         problem = self.problem
-        return CorrectedModel(
-            problem.nominal, self.effects, problem.slow, problem.held, problem.straight, left=self.missed
-        )
+        return CorrectedModel(problem.nominal, self.effects, problem.slow, problem.held, problem.straight)

@@ -17,13 +17,13 @@ from lagnet.errors import LagnetError, ModelError
 from lagnet.files import finite_json, read_bounded, write_whole
 from lagnet.models.corrected.changed_bodies import are_consistent
 from lagnet.models.corrected.layer_files import layer_as_json, layer_from_json
-from lagnet.models.corrected.model import CorrectedModel
+from lagnet.models.corrected.model import LAYERS, CorrectedModel
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 6  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
-# 5: torque and friction over position; 6: flexible joints with dampers
+FORMAT = 7  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
+# 5: torque and friction over position; 6: flexible joints with dampers; 7: what each layer leaves
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200
@@ -44,7 +44,7 @@ def save_corrected(model: CorrectedModel, folder: str | Path) -> Path:
         "nominal": nominal,
         "slow": [float(s) for s in model.slow],
         "held": _as_list(model.held),
-        "left": _as_list(model.left),
+        "left": None if model.errors is None else {layer: _as_list(row) for layer, row in model.errors.items()},
         "straight": None if model.straight is None else [bool(x) for x in model.straight],
         "effects": [
             {"effect": e.effect, "joint": e.joint, "values": dict(e.values), "interval": e.interval}
@@ -118,7 +118,8 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
         kept = frozenset((e.effect, e.joint) for e, t in zip(effects, text["effects"], strict=True) if t.get("kept"))
         identified, instead = (layer_from_json(text.get(k), len(joints)) for k in ("identified", "instead"))
         remainder = remainder_from_json(text.get("remainder"), len(joints)) if layers == "full" else None
-        held, left, straight = (_as_row(text.get(name)) for name in ("held", "left", "straight"))
+        held, straight = (_as_row(text.get(name)) for name in ("held", "straight"))
+        errors = _errors(text.get("left"))
     except (KeyError, TypeError, ValueError, LagnetError) as error:
         raise ModelError(f"is damaged ({error})", where=str(where), next_step="run the diagnosis again") from None
     seen = file if file.is_file() else file / FILE
@@ -126,14 +127,24 @@ def load_corrected(folder: str | Path, load_any: Callable[[Path], Any], layers: 
         raise ModelError("the nominal model beside it was changed or is missing", where=str(seen))
     nominal = load_any(file)
     if tuple(nominal.joints) != joints or any(
-        len(x) != len(joints) for x in (slow, held, left, straight) if x is not None
+        len(x) != len(joints) for x in (slow, held, straight, *(errors or {}).values()) if x is not None
     ):
         raise ModelError("its joints are not those of its nominal model", where=str(where))
     straight = None if straight is None else straight.astype(bool)
     of_file = (str(folder), _checksum(where))
-    model = CorrectedModel(nominal, effects, slow, held, straight, *of_file, left=left, identified=identified)
+    model = CorrectedModel(nominal, effects, slow, held, straight, *of_file, errors=errors, identified=identified)
     model = replace(model, instead=instead, kept=kept, remainder=remainder)
     return model.with_layers(layers)
+
+
+def _errors(entry: Any) -> dict[str, np.ndarray] | None:
+    """What each layer leaves; older folders tell it of the named one alone, and no other is known to leave less."""
+    if entry is None:
+        return None
+    rows = {layer: _as_row(entry[layer] if isinstance(entry, dict) else entry) for layer in LAYERS}
+    if any(row is None for row in rows.values()):
+        raise ValueError("it does not tell what each layer leaves")
+    return cast(dict[str, np.ndarray], rows)
 
 
 def _as_list(row: np.ndarray | None) -> list[float] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, final
@@ -59,8 +59,8 @@ class CorrectedModel:
         sha256: checksum of what it was read from.
         recording: index of the fitted recording whose motion it is asked for; None: any other motion, where nothing
             acts that lasts for a while only.
-        left: shape (dof,), √max(mean r² − σ², 0) of its residual r on held-out motion, σ the noise [N m]; None: not
-            known.
+        errors: by layer, shape (dof,): √max(mean r² − σ², 0) of the residual r that it and those before it leave on
+            held-out motion, σ the noise [N m]; None: not known.
         identified: Y Δπ and Σ_i w_i f_i, which the recordings determine whatever their cause; None: nothing.
         instead: such a layer in the place of the effects that always act and of `identified`, where it predicts unseen
             motion better than both: torques are then of it, and the effects are claims alone. None: there is none.
@@ -76,7 +76,7 @@ class CorrectedModel:
     source: str = ""
     sha256: str = ""
     recording: int | None = None
-    left: JointVector | None = None
+    errors: Mapping[str, JointVector] | None = None
     identified: IdentifiedLayer | None = None
     instead: IdentifiedLayer | None = None
     kept: frozenset[tuple[str, int | None]] = frozenset()
@@ -94,6 +94,15 @@ class CorrectedModel:
     def layer(self) -> IdentifiedLayer | None:
         """The identified layer that torques are of."""
         return self.identified if self.instead is None else self.instead
+
+    @property
+    def left(self) -> JointVector | None:
+        """What its layers leave beyond the noise on held-out motion, shape (dof,) [N m]; None: not known."""
+        if self.errors is None:
+            return None
+        if self.remainder is not None:
+            return self.errors["full"]
+        return self.errors["named" if self.layer is None else "identified"]
 
     @property
     def acting(self) -> tuple[NamedEffect, ...]:
