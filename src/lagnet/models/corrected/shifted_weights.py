@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.effects.signal.encoder_offset import EncoderOffset
-from lagnet.models.corrected.tilted_bodies import BODIES, TILT, Named, carried_torque, change_of_gravity
+from lagnet.models.corrected.presence import presence
+from lagnet.models.corrected.tilted_bodies import BODIES, TILT, Named, change_of_gravity, link_of
 
 OFFSET = EncoderOffset.name
 OFFSET_LAW = EncoderOffset()
@@ -32,19 +34,34 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
     if not tilts and not bodies:
         return 0.0
     change = change_of_gravity(motion, tilts)
-    ahead, behind = (motion.remembered(("shifted", joint, s), lambda s=s: _shifted(motion, joint, s)) for s in (1, -1))
-    more, less = (carried_torque(p, bodies, change) + (_turned(p) @ change if tilts else 0.0) for p in (ahead, behind))
-    return (more - less) / (2.0 * STEP)
+    out = np.zeros_like(motion.load)
+    for body in bodies:
+        columns = _slope(motion, joint, "link_regressor", link_of(motion, body))
+        if tilts:
+            columns = columns + np.tensordot(change, _slope(motion, joint, "weight", link_of(motion, body)), 1)
+        share = np.asarray(presence(motion, body))[..., None]
+        out += columns @ np.asarray(effect_named(body.effect).coordinates(body.values)) * share
+    return out + _slope(motion, joint, "turned") @ change if tilts else out
+
+
+def _slope(motion: Motion, joint: int, of: str, link: int | None = None) -> np.ndarray:
+    """∂/∂q_j of a linear map of bodies or gravity, which serves for all values of these: it is computed once."""
+
+    def slope() -> np.ndarray:
+        ahead, behind = (of_them(_shifted(motion, joint, s)) for s in (1, -1))
+        return (ahead - behind) / (2.0 * STEP)
+
+    of_them = {
+        "link_regressor": lambda p: p.bodies.link_regressor(link, p.q, p.v, p.a),
+        "weight": lambda p: p.bodies.weight_regressor(link, p.q),
+        "turned": lambda p: p.bodies.gravity_regressor(p.q),
+    }[of]
+    return motion.remembered(("slope", of, joint, link), slope)
 
 
 def moved_bodies(joint: int, effects: Sequence[Named]) -> list[Named]:
     """Payloads and link changes behind a joint, which turns none of the links before it."""
     return [e for e in effects if e.effect in BODIES and (e.joint is None or e.joint >= joint)]
-
-
-def _turned(motion: Motion) -> np.ndarray:
-    """Holding torque of the nominal bodies per unit of gravity along each axis, shape (n, dof, 3)."""
-    return motion.remembered("turned", lambda: motion.bodies.gravity_regressor(motion.q))
 
 
 def secant_columns(motion: Motion, joint: int, known: Sequence[Named], columns: np.ndarray) -> np.ndarray:

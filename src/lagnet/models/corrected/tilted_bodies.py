@@ -127,7 +127,7 @@ def _carried(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.
     """Torque of bodies that are there throughout: linear in them, so that one Newton-Euler pass serves for all."""
     parameters = np.zeros((motion.n_dof, 10))
     for body in bodies:
-        parameters[_link(motion, body)] += effect_named(body.effect).coordinates(body.values)
+        parameters[link_of(motion, body)] += effect_named(body.effect).coordinates(body.values)
     if isinstance(motion.model, Robot):
         turned = motion.model.with_gravity(motion.model.gravity + change)
         return torque_of_change(turned, parameters, motion.q, motion.v, motion.a)
@@ -135,12 +135,13 @@ def _carried(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.
     return moving + (sum(_weight(motion, b, change) for b in bodies) if change.any() else 0.0)
 
 
-def _link(motion: Motion, body: Named) -> int:
+def link_of(motion: Motion, body: Named) -> int:
+    """Number of the link that a payload or a change of a link belongs to."""
     return motion.n_dof - 1 if body.joint is None else body.joint
 
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
-    link = _link(motion, body)
+    link = link_of(motion, body)
     weights = np.asarray(effect_named(body.effect).coordinates(body.values))
     alone = None if f"weights_{link}" in motion.cache else motion.body_alone(link, weights)
     if alone is not None:  # Newton–Euler at rest
