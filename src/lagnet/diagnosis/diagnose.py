@@ -128,7 +128,7 @@ def diagnose(
         def run(part: Problem) -> DiagnosisState:
             return run_pipeline(part, given)
 
-        return beside_links(settle_transients(run(problem), run), lambda free: settle_transients(run(free), run))
+        return beside_links(settle_transients(run(problem), run), run)
 
     first = at(bandwidth) if bandwidth is not None else best_band(at(None), at)
     state = with_misspecification(on_one_clock(first, lambda shift: at(first.fit.bandwidth, shift)))

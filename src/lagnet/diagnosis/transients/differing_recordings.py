@@ -76,6 +76,17 @@ def differing_groups(problem: Problem, scan: Scan, effects: Sequence[NamedEffect
     return None if same else of_all
 
 
+def loads_of_whole(problem: Problem, recordings: Sequence[int], scan: Scan) -> Differing | None:
+    """A load for each of these recordings, beside no effect; None where some have none."""
+    found, of_all = _with_own_loads(problem, [_whole(problem, n, 0.0) for n in recordings], scan, ())
+    return of_all if len(found) == len(recordings) else None
+
+
+def with_origins_of(problem: Problem, other: Problem) -> Problem:
+    """The problem with each held-out recording as a part of the fitted one that it is in another problem."""
+    return _as_parts(problem, {p.recording: p.origin for p in other.holdout})
+
+
 def _whole(problem: Problem, recording: int, gain: float) -> EventInterval:
     pieces = _fitted(problem, recording)
     return EventInterval(recording, False, float(pieces[0].time[0]), float(pieces[-1].time[-1]), gain)

@@ -66,7 +66,15 @@ def _differences(state: DiagnosisState, fit: Sequence[Recording]) -> tuple[str, 
         f"{_name(fit, e.recording or 0)}"
         for e in own
     ]
-    return (f"the recordings differ from each other: the arm carries {'; '.join(loads)}",)
+    beyond = "" if state.judged is None else _beyond_the_others(state, fit, {e.recording or 0 for e in own})
+    return (f"the recordings differ from each other: the arm carries {'; '.join(loads)}{beyond}",)
+
+
+def _beyond_the_others(state: DiagnosisState, fit: Sequence[Recording], loaded: set[int]) -> str:
+    """What loads are beyond, where links are fitted beside them: what the other recordings carry is in these links."""
+    others = sorted({p.recording for p in state.problem.fit} - loaded)
+    names = ", ".join(_name(fit, n) for n in others)
+    return f", beyond what it carries in {names}, which its links hold" if others else ""
 
 
 def _loads_of_the_held(state: DiagnosisState, fit: Sequence[Recording], held: Sequence[Recording]) -> tuple[str, ...]:
