@@ -1,4 +1,4 @@
-"""Loads beyond what one recording carries, where the links of the model differ as well: τ = (Y + Δ) π + Y_last δ_k.
+"""Loads beyond what one recording carries, where the links of the model differ as well: τ = Y (π + Δπ) + Y_last δ_k.
 
 Every recording is left unexplained by links that are wrong, so that none stands out, and links as all recordings
 together determine them explain none, as loads differ. The links are identified on one recording, the reference, then

@@ -43,15 +43,26 @@ def test_many_times_larger_errors_outweigh_a_rival_that_is_simpler_in_three_bloc
     alone = log10_odds([80.0], here, there, [0.0])
     assert 0.5 < alone < 4.0  # three blocks are sure of no more, whatever they say
     assert 0.5 < log10_odds([80.0], here, there, [0.0], -9.0) < alone
-    assert log10_odds([80.0], here, there, [0.0], 9.0) > alone
+    assert log10_odds([80.0], here, there, [0.0], 9.0) == pytest.approx(alone + 9.0 / np.log(10.0))
+
+
+@pytest.mark.parametrize("simpler", [-30.0, -2.0, -0.1, 0.0, 0.1, 2.0, 30.0])
+def test_odds_of_the_rival_are_the_inverse_whichever_is_simpler(errors, simpler) -> None:
+    here, there = errors
+    told = log10_odds([500.0], here, 1.1 * there, [0.0], simpler)
+    assert log10_odds([500.0], 1.1 * there, here, [0.0], -simpler) == pytest.approx(-told, rel=IDENTITY)
+
+
+def test_a_penalty_that_blocks_do_not_make_good_decides() -> None:
+    here, there = np.full((1, BLOCKS), 1.0), np.full((1, BLOCKS), 1.02)
+    gain = 50.0 * np.log(1.02)
+    assert log10_odds([100.0], here, there, [0.0], -3.0) == pytest.approx((gain - 3.0) / np.log(10.0))
 
 
 def test_where_blocks_tell_nothing_the_simpler_one_is_preferred_by_its_penalty(errors) -> None:
     here = errors[0]
     assert log10_odds([500.0], here, here, [0.0], 2.0) == pytest.approx(2.0 / np.log(10.0))
     assert log10_odds([500.0], here[:, :1], here[:, :1], [0.0], 2.0) == pytest.approx(2.0 / np.log(10.0))
-    scattered = log10_odds([500.0], here, here + errors[1] - errors[1].mean(), [0.0], 2.0)
-    assert scattered < 2.0 / np.log(10.0)  # and by less where they contradict each other
 
 
 def test_scattering_blocks_give_the_odds_of_their_mean_over_its_error() -> None:

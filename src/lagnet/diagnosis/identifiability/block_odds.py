@@ -1,13 +1,16 @@
 """Odds that one selection predicts blocks of motion better than another, from the scatter between blocks.
 
-With D = Σ_j n_j / (2 g_j) ln(E'_j / E_j) + P' − P the difference of log evidence, P the penalties on complexity, and
-u_b the influence of block b on it,
+With D = Σ_j n_j / (2 g_j) ln(E'_j / E_j) the difference of log evidence and u_b the influence of block b on it,
 
 > z = D / √(B / (B − 1) Σ_b u_b²),  u_b = Σ_j n_j / (2 g_j) (E'_jb / E'_j − E_jb / E_j)
 
-is the test of Vuong (Econometrica 57, 1989) for two inexact models, corrected for their complexity as there. The odds
-are those of a Student variable of B − 1 degrees of freedom to lie below z, and at most exp D: where something
-structured is always left, a sum over many samples is surer than the recordings are.
+is the test of Vuong (Econometrica 57, 1989) for two inexact models. The odds are those of a Student variable of
+B − 1 degrees of freedom to lie below z, and at most exp D: where something structured is always left, a sum over
+many samples is surer than the recordings are.
+
+Of two selections the simpler one has the smaller penalty P on complexity. Where the blocks prefer it, P' − P adds to
+the odds. Where they prefer the other, that one must first make good its penalty, as in Vuong's corrected test: then
+D + P' − P is bounded in the place of D.
 """
 
 from __future__ import annotations
@@ -54,12 +57,20 @@ def log10_odds(
     here_lost, there_lost = (bool(np.isinf(s).any()) for s in sums)  # one that a fold leaves undetermined
     if here_lost or there_lost:
         return GREATEST * (there_lost - here_lost)
-    gain = float(np.sum(weight * np.log(sums[1] / sums[0]))) + simpler
+    gain = float(np.sum(weight * np.log(sums[1] / sums[0])))
     influence = weight @ (there / sums[1][:, None] - here / sums[0][:, None])
     felt = int(np.sum(np.any(here + there > 0.0, axis=0)))
     if felt < 2 or gain == 0.0:
         return simpler / LN10
     spread = float(np.sqrt(felt / (felt - 1) * np.sum(influence**2)))
+    if gain * simpler >= 0.0:
+        return _bounded(gain, spread, felt) + simpler / LN10
+    left = gain + simpler
+    return _bounded(left, spread, felt) if left * gain > 0.0 else left / LN10
+
+
+def _bounded(gain: float, spread: float, felt: int) -> float:
+    """log10 odds of a gain of evidence [nats] with a standard deviation, told by so many blocks."""
     z = abs(gain) / max(spread, 1e-12 * abs(gain))
     told = (student.logcdf(z, felt - 1) - student.logsf(z, felt - 1)) / LN10
     return float(np.copysign(min(abs(gain) / LN10, told, GREATEST), gain))
