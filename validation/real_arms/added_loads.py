@@ -121,11 +121,11 @@ def calibrated(arm: Arm) -> Any:
 def questions(arm: Arm, model: Any, one: Load, two: Load) -> Iterator[tuple[str, Any, list[Recording], Any]]:
     """What is asked: its name, the model, the recordings, and the number of the loaded one with mass and centre."""
     first, second = arm.pair
-    heavy, light = (one, two) if one.mass > two.mass else (two, one)
+    light = replace(two, mass=0.5 * one.mass)
     yield "calibrated", model, [one.on(arm.robot, second)], (None, one.mass, one.centre)
     yield "beside a free one", arm.robot, [first, one.on(arm.robot, second)], (1, one.mass, one.centre)
-    both = [light.on(arm.robot, first), heavy.on(arm.robot, second)]
-    yield "two loads", arm.robot, both, (TWO, *heavy.beyond(light))
+    both = [light.on(arm.robot, first), one.on(arm.robot, second)]
+    yield "two loads", arm.robot, both, (TWO, *one.beyond(light))
 
 
 def without_load(arm: Arm, model: Any) -> Iterator[tuple[str, Any, list[Recording], Any]]:
