@@ -47,6 +47,7 @@ from lagnet.types import is_robot_model
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
 MUCH = 0.05  # of a joint's mismatch: if names leave so much, links that differ may explain it
+SOME = 0.01  # of a joint's mismatch: if names leave so much, recordings that differ may explain it
 OUTDONE = 3.0  # times the error beside the links and functions of motion that the recordings determine
 CLEARLY = 2.0  # times the noise that it must exceed
 FACTORS = (0.5, 0.25)  # of the bandwidth
@@ -66,7 +67,7 @@ def beside_links(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]
     second = None
     if first.problem.given is None and (is_puzzled(first) or is_outdone(first)):
         second = _beside_free_links(first, run)
-    if second is None and is_puzzled(first, MUCH):
+    if second is None and is_puzzled(first, SOME):
         second = _beside_links_and_loads(first, run)
     return first if second is None else replace(second, rejected=(*first.rejected, *second.rejected))
 
@@ -87,16 +88,26 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
 
 
 def _beside_links_and_loads(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]) -> DiagnosisState | None:
-    """A run beside all links and loads of single recordings, where it tells what puzzles or leaves far less.
+    """A run beside all links and loads of single recordings, where it tells what puzzles.
 
-    Far less is a third of the held-out error in the mean over joints.
+    Or where links and functions of motion that all recordings share leave three times as much without the loads.
     """
     second = _beside_loads(first, beyond_one_recording(as_given(first.problem), first.noise), run)
     if second is None or not second.transients:
         return None
-    before, after = (log_error(one.after, one.noise) for one in (first, second))
-    tells = is_puzzled(first) and not is_puzzled(against_given(second))
-    return second if tells or after < before - BETTER * first.problem.n_dof else None
+    if is_puzzled(first) and not is_puzzled(against_given(second)):
+        return second
+    before, after = (_error_beside_layer(one) for one in (first, second))
+    return second if after < before - BETTER else None
+
+
+def _error_beside_layer(state: DiagnosisState) -> float:
+    """Σ_j ln max(mean r_j², σ_j²) on held-out motion, beside what the recordings determine without a name."""
+    if state.identified is None:
+        return log_error(state.after, state.noise)
+    layer = state.identified.layer
+    _, power = powers_beside(state.problem, state.problem.holdout, state.effects, layer)
+    return float(np.sum(np.log(np.maximum(power, np.maximum(state.noise, 1e-12) ** 2))))
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
