@@ -64,18 +64,18 @@ def beside_links(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]
     Args:
         run: another run on the same recordings against another nominal model.
     """
-    second = None
-    if first.problem.given is None and (is_puzzled(first) or is_outdone(first)):
-        second = _beside_free_links(first, run)
-    if second is None and is_puzzled(first, SOME):
-        second = _beside_links_and_loads(first, run)
-    return first if second is None else replace(second, rejected=(*first.rejected, *second.rejected))
+    best = first
+    for beside in (_beside_free_links, _beside_links_and_loads):
+        second = beside(best, run)
+        if second is not None:
+            best = replace(second, rejected=(*best.rejected, *second.rejected))
+    return best
 
 
 def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]) -> DiagnosisState | None:
     """A run beside all links that recordings share; None where it explains no more than the first."""
     puzzled = is_puzzled(first)
-    if puzzled and not is_identified(first):
+    if first.problem.given is not None or not (is_identified(first) if puzzled else is_outdone(first)):
         return None
     free = beside_free_bodies(first.problem, first.noise, identify(first.problem, ()))
     if free is None:
@@ -92,6 +92,8 @@ def _beside_links_and_loads(first: DiagnosisState, run: Callable[[Problem], Diag
 
     Or where links and functions of motion that all recordings share leave three times as much without the loads.
     """
+    if not is_puzzled(first, SOME):
+        return None
     second = _beside_loads(first, beyond_one_recording(as_given(first.problem), first.noise), run)
     if second is None or not second.transients:
         return None

@@ -118,6 +118,16 @@ def rubbing(q, v, a, body) -> np.ndarray:
     return 4.0 * v + 6.0 * np.tanh(v / 1e-2)
 
 
+def test_groups_keep_their_loads_beside_friction_that_is_several_times_as_much(plant, arm) -> None:
+    free = [plant(rubbing).record(n) for n in (40, 41)]
+    loaded = [carrying(plant, arm, CENTRES[k % 2], 50 + k, rubbing) for k in range(4)]
+    found = diagnose([*free, *loaded], arm)
+    loads = [e for e in found.effects if e.effect == "payload"]
+    assert {e.recording for e in loads} == {f"recording {k}" for k in (3, 4, 5, 6)}
+    for effect in loads:
+        assert effect.value("m") == pytest.approx(MASS, rel=NEAR)
+
+
 def test_each_has_its_load_where_every_joint_rubs(plant, arm) -> None:
     found = diagnose([carrying(plant, arm, c, n, rubbing) for n, c in zip((22, 23), CENTRES, strict=True)], arm)
     loads = [e for e in found.effects if e.effect == "payload"]
