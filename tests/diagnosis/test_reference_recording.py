@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.diagnosis.test_free_bodies import friction
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
 from lagnet.diagnosis.problem.problem import pose_problem
@@ -19,16 +20,7 @@ MASSES = {0: 0.5, 1: 1.7}  # [kg]
 CENTRE = np.array([0.05, -0.04, 0.1])  # [m], in the frame of the last link
 NEAR = 0.03  # relative error of a mass
 APART = 0.01  # [m] by which a centre may be off
-SHARP = 1e-3  # [rad/s]
 QUIET = 1e-3 * np.ones(JOINTS)  # [N m]
-
-
-def friction(q: np.ndarray, v: np.ndarray, a: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """Coulomb friction at the second joint, viscous friction at the last."""
-    out = np.zeros_like(v)
-    out[:, 1] = 2.0 * np.tanh(v[:, 1] / SHARP)
-    out[:, -1] = 0.5 * v[:, -1]
-    return out
 
 
 @pytest.fixture(scope="module")

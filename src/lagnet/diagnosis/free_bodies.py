@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.real_inertia import columns_of, given_to_links
 from lagnet.diagnosis.problem.problem import Problem, Segment
-from lagnet.diagnosis.problem.residuals import power_of
+from lagnet.diagnosis.problem.residuals import log_of_powers, power_of
 from lagnet.diagnosis.regression.library import of_motion_alone
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.state import DiagnosisState
@@ -78,8 +78,7 @@ def take_the_place_of_gains(beside: DiagnosisState, candidate: Candidate) -> boo
 
 def log_error(left: Remainder, noise: np.ndarray) -> float:
     """Σ_j ln max(mean r_j², σ_j²) on held-out motion."""
-    power = [power_of(*left.holdout, joint) for joint in range(len(noise))]
-    return float(np.sum(np.log(np.maximum(power, np.maximum(noise, 1e-12) ** 2))))
+    return log_of_powers([power_of(*left.holdout, joint) for joint in range(len(noise))], noise)
 
 
 def gains_among(effects: Sequence[NamedEffect]) -> int:
@@ -104,10 +103,15 @@ def beside_free_bodies(problem: Problem, noise: np.ndarray, found: Identified | 
     layer = with_all_that_links_can_have(problem, found)
     if layer.bodies is None or not explains(problem, problem.fit, (), layer, noise):
         return None
-    robot: RobotModel = problem.nominal
-    if not np.all(is_physically_consistent(robot.inertial_parameters() + layer.bodies)):
+    return against_links(problem, layer.bodies)
+
+
+def against_links(problem: Problem, change: np.ndarray) -> Problem | None:
+    """The problem against links that differ from the given ones, shape (dof, 10); None where no matter has these."""
+    robot = cast(RobotModel, problem.nominal)
+    if not np.all(is_physically_consistent(robot.inertial_parameters() + change)):
         return None
-    return replace(with_nominal(problem, with_changed_bodies(robot, layer.bodies)), given=problem.nominal)
+    return replace(with_nominal(problem, with_changed_bodies(robot, change)), given=problem.nominal)
 
 
 def with_all_that_links_can_have(problem: Problem, found: Identified) -> IdentifiedLayer:

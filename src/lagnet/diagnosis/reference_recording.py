@@ -10,19 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 
-from lagnet.diagnosis.free_bodies import with_all_that_links_can_have, with_changed_bodies, with_nominal
+from lagnet.diagnosis.free_bodies import against_links, with_all_that_links_can_have
 from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.problem.residuals import log_of_powers
 from lagnet.diagnosis.transients.detection import detect_events
 from lagnet.diagnosis.transients.differing_recordings import FALLS, MANY, Differing, loads_of_whole, with_origins_of
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
-from lagnet.rigid_body.inertia import is_physically_consistent
-from lagnet.types import RobotModel, is_robot_model
+from lagnet.types import is_robot_model
 
 ROUNDS = 2  # of links beside loads, and loads beside links
 RIDGE = 1e-8  # of the largest singular value: directions of a load that the motion does not show
@@ -93,7 +92,7 @@ def _with_loads(problem: Problem, found: Identified, others: Iterable[int], nois
     if not loads or any(load[0] <= 0.0 for load in loads.values()):
         return None
     power = np.mean(np.concatenate([*residuals.values()]) ** 2, axis=0)
-    return _Reference(found, loads, float(np.sum(np.log(np.maximum(power, noise**2)))))
+    return _Reference(found, loads, log_of_powers(power, noise))
 
 
 def _corrected(problem: Problem, layer: IdentifiedLayer) -> CorrectedModel:
@@ -134,11 +133,10 @@ def _less(problem: Problem, piece: Segment, loads: Mapping[int, np.ndarray]) -> 
 
 def _differing(problem: Problem, found: _Reference, noise: np.ndarray) -> Differing | None:
     """The same loads as real bodies, and the problem against the real links; None where these are none."""
-    nominal = cast(RobotModel, problem.nominal)
     layer = with_all_that_links_can_have(_without(problem, found.loads), found.found)
-    if layer.bodies is None or not np.all(is_physically_consistent(nominal.inertial_parameters() + layer.bodies)):
+    free = None if layer.bodies is None else against_links(problem, layer.bodies)
+    if free is None:
         return None
-    free = replace(with_nominal(problem, with_changed_bodies(nominal, layer.bodies)), given=nominal)
     of_links = _without_functions(problem, free, layer)
     scan = detect_events(_without(of_links, found.loads), (), noise)
     loads = loads_of_whole(of_links, [*found.loads], scan)

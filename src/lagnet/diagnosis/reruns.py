@@ -28,6 +28,7 @@ from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
+from lagnet.diagnosis.problem.residuals import log_of_powers
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.reference_recording import beyond_one_recording
 from lagnet.diagnosis.state import DiagnosisState
@@ -109,7 +110,7 @@ def _error_beside_layer(state: DiagnosisState) -> float:
         return log_error(state.after, state.noise)
     layer = state.identified.layer
     _, power = powers_beside(state.problem, state.problem.holdout, state.effects, layer)
-    return float(np.sum(np.log(np.maximum(power, np.maximum(state.noise, 1e-12) ** 2))))
+    return log_of_powers(power, state.noise)
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
@@ -189,7 +190,7 @@ def _error(state: DiagnosisState, judge: DiagnosisState, events: Sequence[EventI
         rest.append(problem.reduce(piece, piece.tau - torque_with(motion, state.effects)) * piece.counts)
         counts.append(piece.counts)
     power = np.sum(np.concatenate(rest) ** 2, axis=0) / np.maximum(1, np.concatenate(counts).sum(axis=0))
-    return float(np.sum(np.log(np.maximum(power, np.maximum(judge.noise, 1e-12) ** 2))))
+    return log_of_powers(power, judge.noise)
 
 
 def on_one_clock(first: DiagnosisState, shifted: Callable[[float], DiagnosisState]) -> DiagnosisState:

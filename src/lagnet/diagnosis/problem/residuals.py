@@ -47,6 +47,11 @@ class RecordingResidual:
         return RecordingResidual(motion, self.residual[rows], self.valid[rows], self.index)
 
 
+def log_of_powers(power: Sequence[float] | np.ndarray, noise: np.ndarray) -> float:
+    """Σ_j ln max(p_j, σ_j²) of mean square residuals p, shape (dof,) [N² m²]; a third at any joint weighs the same."""
+    return float(np.sum(np.log(np.maximum(power, np.maximum(noise, 1e-12) ** 2))))
+
+
 def residual_by_recording(
     problem: Problem, pieces: Sequence[Segment], effects: Sequence[NamedEffect]
 ) -> tuple[RecordingResidual, ...]:

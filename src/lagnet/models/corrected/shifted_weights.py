@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,27 +36,35 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
     change = change_of_gravity(motion, tilts)
     out = np.zeros_like(motion.load)
     for body in bodies:
-        columns = _slope(motion, joint, "link_regressor", link_of(motion, body))
+        link = link_of(motion, body)
+        columns = _slope(motion, joint, _of_motion, link)
         if tilts:
-            columns = columns + np.tensordot(change, _slope(motion, joint, "weight", link_of(motion, body)), 1)
+            columns = columns + np.tensordot(change, _slope(motion, joint, _of_weight, link), 1)
         share = np.asarray(presence(motion, body))[..., None]
         out += columns @ np.asarray(effect_named(body.effect).coordinates(body.values)) * share
-    return out + _slope(motion, joint, "turned") @ change if tilts else out
+    return out + _slope(motion, joint, _of_gravity, 0) @ change if tilts else out
 
 
-def _slope(motion: Motion, joint: int, of: str, link: int | None = None) -> np.ndarray:
+def _slope(motion: Motion, joint: int, of: Callable[[Motion, int], np.ndarray], link: int) -> np.ndarray:
     """∂/∂q_j of a linear map of bodies or gravity, which serves for all values of these: it is computed once."""
 
     def slope() -> np.ndarray:
-        ahead, behind = (of_them(_shifted(motion, joint, s)) for s in (1, -1))
+        ahead, behind = (of(_shifted(motion, joint, s), link) for s in (1, -1))
         return (ahead - behind) / (2.0 * STEP)
 
-    of_them = {
-        "link_regressor": lambda p: p.bodies.link_regressor(link, p.q, p.v, p.a),
-        "weight": lambda p: p.bodies.weight_regressor(link, p.q),
-        "turned": lambda p: p.bodies.gravity_regressor(p.q),
-    }[of]
-    return motion.remembered(("slope", of, joint, link), slope)
+    return motion.remembered(("slope", of.__name__, joint, link), slope)
+
+
+def _of_motion(motion: Motion, link: int) -> np.ndarray:
+    return motion.bodies.link_regressor(link, motion.q, motion.v, motion.a)
+
+
+def _of_weight(motion: Motion, link: int) -> np.ndarray:
+    return motion.bodies.weight_regressor(link, motion.q)
+
+
+def _of_gravity(motion: Motion, _: int) -> np.ndarray:
+    return motion.bodies.gravity_regressor(motion.q)
 
 
 def moved_bodies(joint: int, effects: Sequence[Named]) -> list[Named]:
