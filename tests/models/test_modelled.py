@@ -67,7 +67,7 @@ def test_what_acts_for_a_while_is_no_part_of_the_model(arm) -> None:
 def test_every_weight_is_the_first_and_only_bounded_parameter_of_its_law() -> None:
     for effect, held in WEIGHTS.items():
         law = effect_named(effect)
-        assert [p.lower for p in law.parameters] == [0.0]
+        assert [p.lower for p in law.free_parameters] == [0.0]
         assert all(parameter in {p.name for p in effect_named(name).parameters} for name, parameter in held)
     assert all(kind in KINDS for _, kind in COUNTERPARTS.values())
 

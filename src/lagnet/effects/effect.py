@@ -13,7 +13,7 @@ A variant is a new final class in a new file, never a flag.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import ClassVar, Literal
@@ -80,6 +80,7 @@ class Effect(ABC):
     is_body: ClassVar[bool] = False  # True: its coordinates are inertial parameters of a body
     changes_link: ClassVar[bool] = False  # True: that body is a modelled link, not one that is added
     is_delay: ClassVar[bool] = False  # True: the torque signal comes late
+    settled: ClassVar[tuple[str, ...]] = ()  # parameters that choose between forms of the law: no refit changes them
     is_limit: ClassVar[bool] = False  # True: it acts where the whole torque, friction and all, exceeds a value
 
     @abstractmethod
@@ -106,6 +107,20 @@ class Effect(ABC):
         """
         return ()
 
+    def sharper_shape(
+        self, coefficients: np.ndarray, shape: Mapping[str, float], beside: Collection[str]
+    ) -> Values | None:
+        """The shape about which the law is best made linear, as fitted coefficients tell; None: the one it has.
+
+        Args:
+            beside: effects that are fitted at its joint as well.
+        """
+        return None
+
+    def free_numbers(self, shape: Mapping[str, float]) -> int:
+        """How many numbers of a shape are set by the residual, beside the coefficients."""
+        return len(shape)
+
     def special_case(self, shape: Mapping[str, float]) -> Values | None:
         """Values of a plainer form, that stand unless those of the shape explain noticeably more; None: none is."""
         return None
@@ -126,15 +141,20 @@ class Effect(ABC):
 
     def coordinates(self, values: Mapping[str, float]) -> np.ndarray:
         """The numbers in which a refit steps, shape (k,): the parameters, or what the law is plainer in."""
-        return np.array([values[p.name] for p in self.parameters])
+        return np.array([values[p.name] for p in self.free_parameters])
 
     def from_coordinates(self, coordinates: np.ndarray) -> Values:
-        """Inverse of `coordinates`."""
-        return {p.name: float(c) for p, c in zip(self.parameters, coordinates, strict=True)}
+        """Inverse of `coordinates`: all parameters but those that are settled."""
+        return {p.name: float(c) for p, c in zip(self.free_parameters, coordinates, strict=True)}
 
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""
-        return np.array([p.lower for p in self.parameters]), np.array([p.upper for p in self.parameters])
+        return np.array([p.lower for p in self.free_parameters]), np.array([p.upper for p in self.free_parameters])
+
+    @property
+    def free_parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that are fitted: all but those that choose a form."""
+        return tuple(p for p in self.parameters if p.name not in self.settled)
 
     def chosen(self, values: Mapping[str, float]) -> np.ndarray:
         """Which coordinates stand at the value of a special case, shape (k,); none by default."""
@@ -169,6 +189,10 @@ class Effect(ABC):
         """Whether fitted coefficients, noise and all, could be those of real physics; looser than `feasible`."""
         lower, upper = self.bounds(shape)
         return bool(np.all(coefficients >= lower) and np.all(coefficients <= upper))
+
+    def formula_with(self, values: Mapping[str, float]) -> str:
+        """The formula of the form that the parameters choose."""
+        return self.formula
 
     def remark(self, values: Mapping[str, float]) -> str:
         """What the parameters come to in plain words, where numbers alone hide it; empty by default."""

@@ -31,6 +31,7 @@ def settings_of(arm: ArmPhysics) -> dict[str, Any]:
         "friction": arm.mean_friction,
         "friction_bias": arm.friction_bias,
         "load_friction": arm.load_friction,
+        "load_friction_by_power": arm.load_friction_by_power,
         "stiffness": arm.stiffness,
         "spring_rest": arm.spring_rest,
         "elasticity": arm.elasticity,

@@ -167,7 +167,10 @@ def _rows(work: GaussNewton, x: np.ndarray, tracked: TrackedSet, problem: Proble
         values = effect.at_coordinates(x[at]).values
         joint = None if effect.joint is None else problem.joints[effect.joint]
         sliding = effect.joint is not None and kinds[effect.joint] == "prismatic"
-        for p, half in zip(effect_named(effect.effect).parameters, spreads, strict=True):
+        law = effect_named(effect.effect)
+        for p, half in zip(law.parameters, spreads, strict=True):
+            if p.name in law.settled:  # a choice between forms has no course over time
+                continue
             value, half = float(values[p.name]), float(half)
             out.append(
                 ParameterRow(effect.effect, joint, p.name, p.unit_for(sliding), value, value - half, value + half)

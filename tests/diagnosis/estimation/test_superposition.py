@@ -40,7 +40,7 @@ def motion() -> Motion:
 
 def given(effect: NamedEffect) -> NamedEffect:
     """With the names of parameters that the catalogue has, in its order."""
-    names = [p.name for p in CATALOGUE[effect.effect].parameters]
+    names = [p.name for p in CATALOGUE[effect.effect].free_parameters]
     return NamedEffect(effect.effect, effect.joint, dict(zip(names, effect.values.values(), strict=True)))
 
 

@@ -65,5 +65,5 @@ def test_a_shift_leaves_the_absence_of_an_effect_outside() -> None:
 
 def test_the_usual_laws_are_linear_and_of_one_joint() -> None:
     for law in map(effect_named, USUAL):
-        assert len(law.parameters) == 1
+        assert len(law.free_parameters) == 1
         assert not law.reaches_all

@@ -18,6 +18,9 @@ ARM = random_arm(3, seed=5, kinds=("revolute",), fixed=False)
 SHARP = 1e-4  # [rad/s], blur of s(v) in the reference: far below the speeds at hand
 
 
+MOTOR_SIDE = {"K": 0.2, "side": 1.0}
+
+
 def corrected(*effects: tuple[str, int | None], slow: float = SHARP) -> CorrectedModel:
     named = tuple(NamedEffect(name, joint, case_values(name)) for name, joint in effects)
     return CorrectedModel(ARM, named, np.full(3, slow))
@@ -34,7 +37,14 @@ def test_every_effect_that_lasts_has_a_forward_law() -> None:
 )
 def test_the_forward_law_gives_the_torque_of_the_catalogue(name: str) -> None:
     joint = None if CATALOGUE[name].whole_arm else 1
-    model = corrected((name, joint))
+    gives_the_same_torque(corrected((name, joint)))
+
+
+def test_the_forward_law_knows_friction_per_torque_of_the_motor() -> None:
+    gives_the_same_torque(corrected().with_effects([NamedEffect("load_dependent_friction", 1, MOTOR_SIDE)]))
+
+
+def gives_the_same_torque(model: CorrectedModel) -> None:
     arm = arm_physics(model)
     rng = np.random.default_rng(3)
     q, a = rng.uniform(-1, 1, (20, 3)), rng.uniform(-2, 2, (20, 3))

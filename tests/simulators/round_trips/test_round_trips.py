@@ -32,8 +32,8 @@ def opened(exporter: str, engine: str, folder: Path, arm: ArmPhysics) -> Engine:
     return engine_of(exporter, engine, folder, arm.robot.joints, STEP)
 
 
-def share_of(name: str, exporter: str, engine: str) -> float:
-    arm = arm_physics(case_of(ARM, name, None if CATALOGUE[name].whole_arm else 1))
+def share_of(name: str, exporter: str, engine: str, **changed: float) -> float:
+    arm = arm_physics(case_of(ARM, name, None if CATALOGUE[name].whole_arm else 1, **changed))
     control = control_of(ARM, SECONDS)
     reference = reference_motion(arm, control)
     moved = engine_motion(EXPORTERS[exporter], arm, partial(opened, exporter, engine), control)
@@ -48,6 +48,11 @@ def test_mujoco_moves_as_the_corrected_model(name: str) -> None:
 @pytest.mark.parametrize("name", ["stribeck_friction", "rotor_inertia"])
 def test_pybullet_moves_as_the_corrected_model(name: str) -> None:
     assert share_of(name, "pybullet", "pybullet") < EXACT
+
+
+@pytest.mark.parametrize(("exporter", "engine"), [("mjcf", "mujoco"), ("pybullet", "pybullet")])
+def test_friction_per_torque_of_the_motor_moves_as_in_the_corrected_model(exporter: str, engine: str) -> None:
+    assert share_of("load_dependent_friction", exporter, engine, side=1.0) < EXACT
 
 
 def test_pybullet_ignores_friction_of_a_urdf_and_mujoco_does_not() -> None:

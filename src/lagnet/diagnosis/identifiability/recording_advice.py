@@ -11,6 +11,11 @@ NEVER = (
     "no motion tells the two apart, for they are equal at every speed; read the torque at rest with the brake on "
     "and the joint unloaded: an offset is still there, friction is not"
 )
+GEAR = (
+    "strokes in both directions under several loads; beside friction per load no motion tells a gain from friction "
+    "that differs by whether motor or load drives: hold the joint with a stop and read a known torque, a gain is "
+    "still there"
+)
 
 RECORDINGS: dict[frozenset[str], str] = {
     frozenset(pair): words
@@ -36,6 +41,7 @@ RECORDINGS: dict[frozenset[str], str] = {
         ("stribeck_friction", "backlash", "slow reversals in poses in which the load does not change sign"),
         ("presliding_hysteresis", "backlash", "slow reversals in poses in which the load does not change sign"),
         ("torque_gain", "torque_offset", "poses in which gravity loads the joint very differently, in both senses"),
+        ("torque_gain", "load_dependent_friction", GEAR),
         ("torque_gain", "payload", "the wrist in several orientations, at rest and accelerated"),
         ("torque_gain", "rotor_inertia", "poses that gravity loads differently, and strong accelerations in each"),
         ("torque_gain", "saturation", "torque from low to as high as allowed"),

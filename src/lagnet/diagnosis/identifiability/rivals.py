@@ -111,7 +111,8 @@ def replacements(
     hypotheses = view.equations.library.hypotheses
     place = hypotheses[index].place
     others = tuple(k for k in own if k != index)
-    fresh = [k for k in view.equations.library.local[view.joint] if k not in own and hypotheses[k].place != place]
+    local = (k for k in view.equations.library.local[view.joint] if hypotheses[k].is_plain)
+    fresh = [k for k in local if k not in own and hypotheses[k].place != place]
     own_name = hypotheses[index].effect
     for k in fresh:
         wider = own_name in hypotheses[k].law.contains  # fits at least as well by itself: no rival on its own

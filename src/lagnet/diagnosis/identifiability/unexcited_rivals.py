@@ -50,7 +50,8 @@ def unexcited_hypotheses(problem: Problem, library: Library, found: Selection) -
         if summary is None or joint is None or not rivals or (law.needs_bodies and not has_bodies):
             continue
         shapes = law.shapes(summary, joint)
-        out.extend(Hypothesis(law.name, joint, tuple(sorted(shape.items()))) for shape in shapes)
+        hypotheses = (Hypothesis(law.name, joint, tuple(sorted(shape.items()))) for shape in shapes)
+        out.extend(h for h in hypotheses if h.is_plain)
     return tuple(out)
 
 

@@ -45,6 +45,11 @@ class Hypothesis:
         return lower - self.modelled * (np.arange(lower.size) == 0), upper
 
     @property
+    def is_plain(self) -> bool:
+        """Whether it is the plainest form of its law."""
+        return self.law.special_case(dict(self.shape)) is None
+
+    @property
     def place(self) -> tuple[str, int | None]:
         """Effect and joint, whatever the shape."""
         return self.effect, self.joint
@@ -116,8 +121,9 @@ class Library:
 
     @cached_property
     def freedom(self) -> tuple[tuple[int, int], ...]:
-        """Numbers of coefficients and of shape parameters of each hypothesis."""
-        return tuple((w, len(h.shape)) for w, h in zip(self.widths, self.hypotheses, strict=True))
+        """Numbers of coefficients and of free numbers in the shape of each hypothesis."""
+        shapes = (h.law.free_numbers(dict(h.shape)) for h in self.hypotheses)
+        return tuple(zip(self.widths, shapes, strict=True))
 
     def incompatible_at(self, joint: int) -> set[tuple[int, int]]:
         """Pairs of a joint's hypotheses that may not stand together: the same law twice, or beside its special case."""

@@ -35,7 +35,7 @@ class ValueAtBound(RejectionRule):
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         for index, effect in zip(candidate.indices, candidate.effects, strict=True):
-            for parameter in effect_named(effect.effect).parameters:
+            for parameter in effect_named(effect.effect).free_parameters:
                 distance, bound = distance_to_bound(effect, parameter)
                 if distance < self.least_distance:
                     detail = (

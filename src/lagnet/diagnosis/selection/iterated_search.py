@@ -19,6 +19,7 @@ from lagnet.diagnosis.regression.excited_hypotheses import build_library
 from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.arm_search import Selection, score_under, search_arm
 from lagnet.diagnosis.selection.below_limits import found_below_limits
+from lagnet.diagnosis.selection.form_exchange import exchange_forms
 from lagnet.diagnosis.selection.gain_exchange import exchange_gains
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
@@ -64,7 +65,9 @@ def _search_once(
 ) -> tuple[NormalEquations, Selection]:
     equations, found = _search_among(problem, build_library(problem), noise, last)
     wider = proposals_from_residual(problem, equations, found)
-    return (equations, found) if wider is None else _search_among(problem, wider, noise, last)
+    if wider is not None:
+        equations, found = _search_among(problem, wider, noise, last)
+    return exchange_forms(problem, equations, found)
 
 
 def _search_among(

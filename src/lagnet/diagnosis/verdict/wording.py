@@ -31,12 +31,12 @@ def explain(
 ) -> str:
     """One or two sentences: effect, joint, parameters, held-out error with and without it, and ties."""
     where = f"at {joint}" if joint else "on the whole arm"
-    shown = values(parameters)
+    shown = values([p for p in parameters if p.name not in law.settled])
     found = {p.name: p.value for p in parameters}
     remark = law.remark(found)
     shown += f" ({remark})" if remark else ""
     title = f"{law.title}, less than modelled," if law.is_less(found) else law.title
-    first = f"{title} {where}, {law.formula} with {shown}: without it the held-out error is "
+    first = f"{title} {where}, {law.formula_with(found)} with {shown}: without it the held-out error is "
     first += f"{percent(evidence.holdout_nmse_without)} of the torque's variance, with it "
     first += f"{percent(evidence.holdout_nmse_with)}."
     if tied:

@@ -86,7 +86,7 @@ class CorrectedModel:
     def __post_init__(self) -> None:
         for effect in self.effects:
             law = effect_named(effect.effect)
-            missing = {p.name for p in law.parameters} - set(effect.values)
+            missing = {p.name for p in law.free_parameters} - set(effect.values)
             if missing:
                 raise EffectError(f"{law.name} lacks the parameters {sorted(missing)}", where=self.source or None)
 

@@ -57,7 +57,8 @@ class NamedEffect:
         """The effect with other coordinates."""
         interval = None if self.interval is None else (float(x[-2]), float(x[-1]))
         own = x if interval is None else x[:-2]
-        return replace(self, values=effect_named(self.effect).from_coordinates(own), interval=interval)
+        values = {**self.values, **effect_named(self.effect).from_coordinates(own)}
+        return replace(self, values=values, interval=interval)
 
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""

@@ -14,6 +14,7 @@ from typing import Any, cast
 import numpy as np
 
 from lagnet.effects.catalogue import effect_named
+from lagnet.effects.torque.load_dependent_friction import LoadDependentFriction
 from lagnet.errors import ModelError
 from lagnet.models.corrected.changed_bodies import apply_to_bodies
 from lagnet.models.corrected.identified import IdentifiedLayer
@@ -77,6 +78,8 @@ class ArmPhysics:
         viscous, quadratic: shape (dof,), torque per speed and per squared speed.
         forward, backward: shape (dof,), dry friction against motion in the positive and negative direction [N m].
         load_friction: shape (dof,), dry friction per torque carried.
+        load_friction_by_power: shape (dof,), how much more of it there is while the motor drives the load, and less
+            while the load drives the motor.
         stiffness, spring_rest: shape (dof,), spring towards a position [N m/rad, rad].
         elasticity: shape (dof,), stiffness between motor and link, infinite where they are one [N m/rad].
         twist_damping: shape (dof,), damping between motor and link [N m s/rad].
@@ -96,6 +99,7 @@ class ArmPhysics:
     forward: JointVector
     backward: JointVector
     load_friction: JointVector
+    load_friction_by_power: JointVector
     stiffness: JointVector
     spring_rest: JointVector
     elasticity: JointVector
@@ -215,12 +219,12 @@ def _flattened(model: Any) -> tuple[Any, list[NamedEffect], JointVector | None]:
 
 def _bare(robot: Robot, rotor: JointVector, blur: JointVector | None, transient: tuple[NamedEffect, ...]) -> ArmPhysics:
     n = robot.n_dof
-    zero = [np.zeros(n) for _ in range(10)]
+    zero = [np.zeros(n) for _ in range(11)]
     rigid = np.full(n, np.inf)
     drives = tuple(Drive() for _ in range(n))
     blurred = np.zeros(n) if blur is None else np.asarray(blur, dtype=float)
-    shift, viscous, quadratic, forward, backward, load, stiffness, rest, damping, gap = zero
-    fields = (shift, rotor, viscous, quadratic, forward, backward, load, stiffness, rest, rigid, damping, gap)
+    shift, viscous, quadratic, forward, backward, load, power, stiffness, rest, damping, gap = zero
+    fields = (shift, rotor, viscous, quadratic, forward, backward, load, power, stiffness, rest, rigid, damping, gap)
     return ArmPhysics(robot, *fields, (), (), (), (), drives, blurred, transient)
 
 
@@ -241,6 +245,14 @@ def _quadratic(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
 
 def _dry(arm: ArmPhysics, joint: int, forward: float, backward: float) -> ArmPhysics:
     return replace(arm, forward=_plus(arm.forward, joint, forward), backward=_plus(arm.backward, joint, backward))
+
+
+def _per_load(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
+    """K, or on the motor's side K / (1 − K) where the motor drives and K / (1 + K) where the load does."""
+    driving, driven = LoadDependentFriction.by_power(v)
+    arm = replace(arm, load_friction=_plus(arm.load_friction, joint, 0.5 * (driving + driven)))
+    by_power = _plus(arm.load_friction_by_power, joint, 0.5 * (driving - driven))
+    return replace(arm, load_friction_by_power=by_power)
 
 
 def _stribeck(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
@@ -287,9 +299,7 @@ ADDED: dict[str, Any] = {
     "coulomb_friction": lambda arm, joint, v: _dry(arm, joint, v["Fc"], v["Fc"]),
     "asymmetric_friction": lambda arm, joint, v: _dry(arm, joint, v["Fc_plus"], v["Fc_minus"]),
     "stribeck_friction": _stribeck,
-    "load_dependent_friction": lambda arm, joint, v: replace(
-        arm, load_friction=_plus(arm.load_friction, joint, v["K"])
-    ),
+    "load_dependent_friction": _per_load,
     "rotor_inertia": lambda arm, joint, v: replace(arm, rotor=_plus(arm.rotor, joint, v["Ia"])),
     "joint_spring": _spring,
     "torque_ripple": _ripple,

@@ -194,9 +194,14 @@ def joint_torque(arm: ArmPhysics, q: JointVector, v: JointVector) -> JointVector
     return torque
 
 
+def friction_per_load(arm: ArmPhysics, v: JointVector, load: JointVector) -> JointVector:
+    """Dry friction per torque of the load, shape (dof,): it may differ by whether motor or load drives."""
+    return arm.load_friction + arm.load_friction_by_power * np.sign(load * v)
+
+
 def dry_friction(arm: ArmPhysics, v: JointVector, load: JointVector) -> JointVector:
     """Largest torque with which dry friction holds or brakes each joint, shape (dof,) [N m]."""
-    bound = arm.mean_friction + arm.load_friction * np.abs(load)
+    bound = arm.mean_friction + friction_per_load(arm, v, load) * np.abs(load)
     for term in arm.stribeck:
         bound[term.joint] += term.extra * np.exp(-((v[term.joint] / term.speed) ** 2))
     return bound

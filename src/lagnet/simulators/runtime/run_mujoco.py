@@ -37,6 +37,7 @@ class CorrectedArm:
         self.command = np.array(actuators if address is None else address[actuators])
         self._friction = np.array(self.settings["friction"])
         self._per_load = np.array(self.settings["load_friction"])
+        self._by_power = np.array(self.settings["load_friction_by_power"])
         self._follows = bool(self.settings["stribeck"]) or self._per_load.any()
 
     def put(self, q, v):
@@ -60,7 +61,8 @@ class CorrectedArm:
         """Dry friction of every joint at the present speed and load."""
         out = self._friction.copy()
         if self._per_load.any():
-            out += self._per_load * np.abs(self.load())
+            load = self.load()
+            out += (self._per_load + self._by_power * np.sign(load * self.data.qvel[self.speed])) * np.abs(load)
         for joint, extra, speed in self.settings["stribeck"]:
             out[joint] += extra * np.exp(-((self.data.qvel[self.speed[joint]] / speed) ** 2))
         return out

@@ -178,7 +178,8 @@ class CorrectedArm:
         return (np.array(carried) + np.diag(self.rotors) * a)[self.motors]
 
     def _dry(self, v, load):
-        out = np.array(self.settings["friction"]) + np.array(self.settings["load_friction"]) * np.abs(load)
+        by_power = np.array(self.settings["load_friction_by_power"]) * np.sign(load * v)
+        out = np.array(self.settings["friction"]) + (np.array(self.settings["load_friction"]) + by_power) * np.abs(load)
         for joint, extra, speed in self.settings["stribeck"]:
             out[joint] += extra * np.exp(-((v[joint] / speed) ** 2))
         return out
