@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
@@ -67,3 +69,14 @@ def test_friction_that_the_identified_layer_bears_out_stays_beside_what_the_laye
     assert left_shares(candidate, "holdout")[1] > LackOfFit().much
     assert (LackOfFit().rejected(candidate) == ()) == stays
     assert LackOfFit(borne_out=np.inf).rejected(candidate) != ()
+
+
+@pytest.mark.parametrize(("times", "stays"), [(5.0, False), (8.0, True)])
+def test_an_effect_outgrows_the_known_error_of_the_nominal_model(plant, arm, at, times, stays) -> None:
+    real = plant(at(1, lambda q, v, a, body: 4.0 * v))
+    posed = pose(arm, real.record(1), real.record(2))
+    candidate = posed.candidate(posed.select({1: ["viscous_friction"]}))
+    assert LackOfFit().rejected(candidate) == ()
+    explained = candidate.power("holdout", ()) - candidate.power("holdout")
+    known = replace(candidate, problem=replace(posed.problem, missed=np.sqrt(np.maximum(explained, 1e-9) / times)))
+    assert (LackOfFit().rejected(known) == ()) == stays
