@@ -56,6 +56,17 @@ def rewrite(folder, **changes) -> None:
     (folder / FILE).write_text(json.dumps(text | changes))
 
 
+def test_friction_per_load_of_an_older_folder_follows_the_torque_of_the_link(tmp_path) -> None:
+    motor = NamedEffect("load_dependent_friction", 0, {"K": 0.1, "side": 1.0})
+    model = CorrectedModel(random_arm(2, seed=3), (motor,), np.full(2, 0.01))
+    folder = save_corrected(model, tmp_path / "corrected")
+    assert load_any(folder).effects == (motor,)
+    text = json.loads((folder / FILE).read_text())
+    del text["effects"][0]["values"]["side"]
+    rewrite(folder, format=7, effects=text["effects"])
+    assert load_any(folder).effects == (replace(motor, values={"K": 0.1, "side": 0.0}),)
+
+
 def test_a_flexible_joint_of_an_older_folder_has_no_damper(tmp_path) -> None:
     effect = NamedEffect("joint_elasticity", 1, {"K": 90.0, "D": 0.0})
     model = CorrectedModel(random_arm(3, seed=5, kinds=("revolute",)), (effect,), np.full(3, 0.01))

@@ -22,8 +22,9 @@ from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.remainder.files import remainder_as_json, remainder_from_json
 from lagnet.rigid_body.robot import Robot
 
-FORMAT = 7  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
-# 5: torque and friction over position; 6: flexible joints with dampers; 7: what each layer leaves
+FORMAT = 8  # 2: with the identified layer; 3: a learned remainder in parts; 4: effects beside a layer in their place;
+# 5: torque and friction over position; 6: flexible joints with dampers; 7: what each layer leaves; 8: friction per
+# torque of the motor
 FILE = "corrected.json"
 MOST_BYTES = 10_000_000
 LONGEST_NAME = 200
