@@ -23,6 +23,7 @@ theta_2 = -0.01
 """
 COUPLED = '[[effect]]\nname = "coupled_transmission"\njoint = "elbow_joint"\nFv = 2\nFc = 1\nIa = 0\n'
 VISCOUS = '[[effect]]\nname = "viscous_friction"\n'
+PER_LOAD = '[[effect]]\nname = "load_dependent_friction"\njoint = "elbow_joint"\nK = 0.1\n'
 
 
 def test_a_good_file_is_read(ur5: Robot, tmp_path: Path) -> None:
@@ -48,6 +49,14 @@ def test_an_empty_file_hides_nothing(ur5: Robot, tmp_path: Path) -> None:
     assert read_effects(tmp_path / "none.toml", ur5) == ()
 
 
+def test_the_side_of_friction_per_load_is_the_link_unless_it_is_told(tmp_path, ur5) -> None:
+    file = tmp_path / "effects.toml"
+    for told, side in (("", 0.0), ("side = 1\n", 1.0)):
+        file.write_text(PER_LOAD + told)
+        (effect,) = read_effects(file, ur5)
+        assert dict(effect.values) == {"K": 0.1, "side": side}
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -61,6 +70,7 @@ def test_an_empty_file_hides_nothing(ur5: Robot, tmp_path: Path) -> None:
         (VISCOUS + 'joint = "elbow_joint"\nFv = nan\n', "out of bounds"),
         (VISCOUS + 'joint = "elbow_joint"\nFv = true\n', "Fv is True, not a number"),
         (VISCOUS + 'joint = "elbow_joint"\nFv = "big"\n', "Fv is 'big', not a number"),
+        (PER_LOAD + "side = 0.5\n", "side = 0.5 chooses no form of the law.*1: of the motor"),
         ('[[effect]]\nname = "gravity_tilt"\njoint = "elbow_joint"\ntheta_1 = 0.1\ntheta_2 = 0\n', "takes no joint"),
         ("[[effect]]\nFv = 2\n", "name is missing"),
         ('effect = "viscous"\n', "not a list of tables"),

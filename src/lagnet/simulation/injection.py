@@ -92,6 +92,12 @@ def _checked_values(effect: Effect, values: Values, where: str | None) -> Values
                 f"{effect.name}: {p.name} = {values[p.name]:g} is out of bounds, {p.lower:g} to {p.upper:g} {p.unit}",
                 where=where,
             )
+        if p.name in effect.settled and values[p.name] not in (p.lower, p.upper):
+            raise EffectError(
+                f"{effect.name}: {p.name} = {values[p.name]:g} chooses no form of the law",
+                where=where,
+                next_step=p.meaning,
+            )
     if not effect.feasible(values):
         raise EffectError(f"{effect.name}: the parameters are physically impossible together", where=where)
     return {name: float(values[name]) for name in names}
