@@ -59,6 +59,8 @@ def test_values_of_files_without_a_side_are_of_the_link() -> None:
 def test_its_formula_says_whose_torque_it_follows() -> None:
     assert "load" in LAW.formula_with({"K": 0.1, "side": LINK})
     assert "motor" in LAW.formula_with({"K": 0.1, "side": MOTOR})
+    assert LAW.remark({"K": 0.1, "side": LINK}) == ""
+    assert all(words in LAW.remark({"K": 0.2, "side": MOTOR}) for words in ("motor", "25 %", "16.7 %"))
 
 
 @few

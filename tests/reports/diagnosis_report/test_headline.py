@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 from types import SimpleNamespace
 
+import pytest
+
 from lagnet.reports.contents.findings import Findings
 from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.sections import headline
@@ -82,3 +84,14 @@ def test_what_an_arm_has_less_of_than_its_model_is_not_told_as_left_out(six) -> 
     assert joints[1] in sentences[0]
     assert joints[0] in sentences[1]
     assert [cause["less"] for cause in headline._causes(findings)] == [True, False]
+
+
+@pytest.mark.parametrize(("side", "told"), [(0.0, False), (1.0, True)])
+def test_the_torque_that_friction_follows_is_told_in_words(side: float, told: bool) -> None:
+    parameters = [
+        {"name": name, "value": value, "unit": "–", "ci95": [value, value]}
+        for name, value in (("K", 0.1), ("side", side))
+    ]
+    words = headline._values({"effect": "load_dependent_friction", "parameters": parameters})
+    assert not any("side" in w for w in words)
+    assert any("torque of the motor" in w for w in words) == told

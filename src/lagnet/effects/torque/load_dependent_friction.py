@@ -8,6 +8,7 @@ import numpy as np
 from lagnet.effects.effect import Effect, Parameter, Values
 from lagnet.effects.excitation import needs_both_directions, needs_varying_load
 from lagnet.effects.motion import Motion
+from lagnet.percent import percent
 
 LINK, MOTOR = 0.0, 1.0  # whose torque presses the teeth
 TRIED = (0.07, 0.126, 0.227)  # for K from 0.05 to 0.3; below, the sides differ by less than 0.3 % of the torque
@@ -87,6 +88,15 @@ class LoadDependentFriction(Effect):
 
     def formula_with(self, values: Mapping[str, float]) -> str:
         return self.formula if values.get("side", LINK) == LINK else "K |τ_motor| s(v)"
+
+    def remark(self, values: Mapping[str, float]) -> str:
+        if values.get("side", LINK) == LINK:
+            return ""
+        driving, driven = self.by_power(values)
+        return (
+            f"per torque of the motor: {percent(driving, 3)} of the link's torque while the motor drives, "
+            f"{percent(driven, 3)} while the load does"
+        )
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         return needs_both_directions(motion, joint) or needs_varying_load(motion, joint)

@@ -155,12 +155,16 @@ def _on(places: tuple[str | None, ...], findings: Findings) -> str:
 
 
 def _values(effect: dict[str, Any]) -> list[str]:
-    parameters = effect["parameters"]
+    law = CATALOGUE.get(effect["effect"])
+    settled = () if law is None else law.settled
+    parameters = [p for p in effect["parameters"] if p["name"] not in settled]
     alone = len(parameters) == 1
     words = [
         ("" if alone else f"{p['name']} ") + f"{with_interval(p['value'], *p['ci95'])} {unit_words(p['unit'])}".rstrip()
         for p in parameters[:SHOWN_PARAMETERS]
     ]
+    form = law.remark({p["name"]: p["value"] for p in effect["parameters"]}) if law is not None and settled else ""
+    words.extend([form] if form else [])
     interval = effect.get("interval_s")
     if interval:
         words.append(f"from {interval[0]:.4g} s to {interval[-1]:.4g} s")
