@@ -52,7 +52,7 @@ def test_what_has_one_form_is_left_as_it_is(plant, arm, at) -> None:
     assert exchange_forms(posed.problem, posed.equations, found) == (posed.equations, found)
 
 
-@pytest.mark.parametrize("k", [K, 0.25, 0.45])
+@pytest.mark.parametrize("k", [0.08, K, 0.25, 0.45])
 @pytest.mark.parametrize("joint", [0, 1, 2])
 def test_friction_per_torque_of_the_motor_is_named_alone(plant, arm, at, k: float, joint: int) -> None:
     real = plant(at(joint, efficiency(k)))
