@@ -52,7 +52,7 @@ class LoadDependentFriction(Effect):
         self, coefficients: np.ndarray, shape: Mapping[str, float], beside: Collection[str]
     ) -> Values | None:
         k = float(coefficients[0])
-        if shape.get("side", LINK) == LINK:
+        if not _follows_motor(shape):
             motor = {"K": 2.0 * k / (1.0 + np.hypot(1.0, 2.0 * k)), "side": MOTOR}  # k = K / (1 − K²)
             return motor if "torque_gain" in beside and k > 0.0 else None
         return {"K": k, "side": MOTOR} if abs(k - shape["K"]) > SHARP * shape["K"] else None
@@ -61,7 +61,7 @@ class LoadDependentFriction(Effect):
         return _per_load(motion, joint, shape)[:, None]
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        if shape.get("side", LINK) == LINK:
+        if not _follows_motor(shape):
             return np.zeros(1), np.ones(1)
         return np.array([shape["K"] / NEAR]), np.array([min(shape["K"] * NEAR, STEEPEST)])
 
@@ -69,7 +69,7 @@ class LoadDependentFriction(Effect):
         return {"K": float(coefficients[0]), "side": float(shape.get("side", LINK))}
 
     def special_case(self, shape: Mapping[str, float]) -> Values | None:
-        return {**shape, "side": LINK} if shape.get("side", LINK) != LINK else None
+        return {**shape, "side": LINK} if _follows_motor(shape) else None
 
     def with_names_of_today(self, held: Mapping[str, float]) -> Values:
         return {**super().with_names_of_today(held), "side": float(held.get("side", LINK))}
@@ -81,16 +81,16 @@ class LoadDependentFriction(Effect):
     def by_power(values: Mapping[str, float]) -> tuple[float, float]:
         """Friction torque per torque of the link: where the motor drives the load, and where that drives the motor."""
         k = values["K"]
-        if values.get("side", LINK) == LINK:
+        if not _follows_motor(values):
             return k, k
         k = min(k, STEEPEST)
         return k / (1.0 - k), k / (1.0 + k)
 
     def formula_with(self, values: Mapping[str, float]) -> str:
-        return self.formula if values.get("side", LINK) == LINK else "K |τ_motor| s(v)"
+        return "K |τ_motor| s(v)" if _follows_motor(values) else self.formula
 
     def remark(self, values: Mapping[str, float]) -> str:
-        if values.get("side", LINK) == LINK:
+        if not _follows_motor(values):
             return ""
         driving, driven = self.by_power(values)
         return (
@@ -102,9 +102,14 @@ class LoadDependentFriction(Effect):
         return needs_both_directions(motion, joint) or needs_varying_load(motion, joint)
 
 
+def _follows_motor(values: Mapping[str, float]) -> bool:
+    """Whether values or a shape are of the motor's side; without a side they are of the link's."""
+    return values.get("side", LINK) != LINK
+
+
 def _per_load(motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
     """r / K, shape (n,) [N m]."""
     load, direction = motion.load[:, joint], motion.direction(joint)
-    if values.get("side", LINK) == LINK:
+    if not _follows_motor(values):
         return np.abs(load) * direction
     return np.abs(load) * direction / (1.0 - min(values["K"], STEEPEST) * direction * np.sign(load))
