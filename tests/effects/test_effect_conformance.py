@@ -185,7 +185,7 @@ def test_values_and_coordinates_round_trip(effect: Effect, ur5, sweep, shapes_of
         assert list(values) == [p.name for p in effect.parameters]
         assert all(type(x) is float and np.isfinite(x) for x in values.values())
         assert set(effect.settled) <= set(values)
-        back = {**values, **effect.from_coordinates(effect.coordinates(values))}
+        back = effect.moved(values, effect.coordinates(values))
         assert back == pytest.approx(values, rel=1e-7, abs=1e-10)
         again = effect.torque(motion, joint, back) - effect.torque(motion, joint, values)
         assert np.abs(again).max() <= 1e-7 * max(1.0, np.abs(motion.load).max())
@@ -198,11 +198,11 @@ def test_bounds_agree_with_one_another(effect: Effect, ur5, sweep, shapes_of, se
     rng = np.random.default_rng(seed)
     joint = pick_joint(effect, ur5.n_dof, seed)
     _, shapes = shapes_of(effect, sweep(ur5, seed).motion, joint)
-    lower, upper = effect.coordinate_bounds()
-    assert lower.shape == upper.shape
-    assert np.all(lower < upper)
     for shape in shapes[:3]:
         values = effect.values(coefficients_inside(effect, shape, 0.2, rng), shape)
+        lower, upper = effect.coordinate_bounds(values)
+        assert lower.shape == upper.shape
+        assert np.all(lower < upper)
         coordinates = effect.coordinates(values)
         assert coordinates.shape == lower.shape
         assert np.all(coordinates >= lower)

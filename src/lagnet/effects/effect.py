@@ -77,7 +77,7 @@ class Effect(ABC):
     is_friction: ClassVar[bool] = False  # True: it dissipates energy at a joint
     is_dry_friction: ClassVar[bool] = False  # True: friction that changes its sign with the velocity
     function_of_speed: ClassVar[bool] = False  # True: its torque is a curve over the joint's velocity alone
-    is_body: ClassVar[bool] = False  # True: its coordinates are inertial parameters of a body
+    is_body: ClassVar[bool] = False  # True: it has inertial parameters
     changes_link: ClassVar[bool] = False  # True: that body is a modelled link, not one that is added
     is_delay: ClassVar[bool] = False  # True: the torque signal comes late
     settled: ClassVar[tuple[str, ...]] = ()  # parameters that choose between forms of the law: no refit changes them
@@ -147,14 +147,22 @@ class Effect(ABC):
         """Inverse of `coordinates`: all parameters but those that are settled."""
         return {p.name: float(c) for p, c in zip(self.free_parameters, coordinates, strict=True)}
 
-    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper bounds of the coordinates."""
+    def moved(self, values: Mapping[str, float], coordinates: np.ndarray) -> Values:
+        """The values at other coordinates: parameters that are settled stay."""
+        return {**values, **self.from_coordinates(coordinates)}
+
+    def coordinate_bounds(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds of the coordinates of values."""
         return np.array([p.lower for p in self.free_parameters]), np.array([p.upper for p in self.free_parameters])
 
     @property
     def free_parameters(self) -> tuple[Parameter, ...]:
         """The parameters that are fitted: all but those that choose a form."""
         return tuple(p for p in self.parameters if p.name not in self.settled)
+
+    def body_parameters(self, values: Mapping[str, float]) -> np.ndarray:
+        """What is added to the ten inertial parameters of its link, shape (10,); zeros where it is no body."""
+        return np.zeros(10)
 
     def chosen(self, values: Mapping[str, float]) -> np.ndarray:
         """Which coordinates stand at the value of a special case, shape (k,); none by default."""

@@ -136,7 +136,7 @@ def _slots(effects: Sequence[NamedEffect], n_dof: int) -> tuple[FollowedSlots, n
     carried = [e for e in effects if effect_named(e.effect).is_body]
     parts = [e.coordinates() for e in own]
     starts = np.concatenate([[0], np.cumsum([p.size for p in parts], dtype=int)]).astype(int)
-    bodies = tuple((n_dof - 1 if e.joint is None else e.joint, e.coordinates()) for e in carried)
+    bodies = tuple((n_dof - 1 if e.joint is None else e.joint, e.body_parameters) for e in carried)
     return FollowedSlots(own, starts, bodies), np.concatenate([*parts, np.zeros(len(bodies))])
 
 

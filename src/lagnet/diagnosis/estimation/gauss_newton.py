@@ -18,7 +18,6 @@ from lagnet.diagnosis.regression.normal_equations import (
     normal,
     power_of_all,
 )
-from lagnet.effects.catalogue import effect_named
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 from lagnet.recordings.sampling import median_step
@@ -45,8 +44,8 @@ class Slots:
         return tuple(e.at_coordinates(x[self.of(n)]) for n, e in enumerate(self.effects))
 
     def of_bodies(self) -> np.ndarray:
-        """Whether a coordinate is a body's, shape (k,)."""
-        return np.repeat([effect_named(e.effect).is_body for e in self.effects], np.diff(self.starts))
+        """Whether a coordinate is one of the ten of a body, shape (k,)."""
+        return np.repeat([e.is_free_body for e in self.effects], np.diff(self.starts))
 
     def chosen(self) -> np.ndarray:
         """Whether a coordinate stands at the value of a special case, shape (k,)."""

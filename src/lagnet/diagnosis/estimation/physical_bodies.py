@@ -10,9 +10,8 @@ from lagnet.diagnosis.estimation.gauss_newton import GaussNewton
 from lagnet.diagnosis.estimation.nearest_body import body_before, nearest_body
 from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse, leaves_open, normal
 from lagnet.effects.catalogue import effect_named
+from lagnet.models.corrected.named_effects import INERTIAL
 from lagnet.rigid_body.inertia import is_physically_consistent
-
-BODY = 10  # coordinates of a body; where it is carried for a while, the edges follow
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,7 @@ def _all_real(work: GaussNewton, x: np.ndarray, bodies: list[int]) -> np.ndarray
 
 
 def _bodies(work: GaussNewton) -> list[int]:
-    return [n for n, e in enumerate(work.slots.effects) if effect_named(e.effect).is_body]
+    return [n for n, e in enumerate(work.slots.effects) if e.is_free_body]
 
 
 def _is_consistent(work: GaussNewton, x: np.ndarray, n: int) -> bool:
@@ -109,7 +108,7 @@ def _body_to_move(tangent: _Tangent, x: np.ndarray, tried: set[int]) -> int | No
 
 
 def _own(work: GaussNewton, x: np.ndarray, n: int) -> np.ndarray:
-    return np.arange(x.size)[work.slots.of(n)][:BODY]
+    return np.arange(x.size)[work.slots.of(n)][:INERTIAL]  # the edges of a load that is carried for a while follow
 
 
 def _near(tangent: _Tangent, x: np.ndarray, n: int) -> np.ndarray:

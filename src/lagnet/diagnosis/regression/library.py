@@ -12,6 +12,7 @@ from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.effects.effect import Effect
 from lagnet.effects.inertia.gravity_tilt import GravityTilt
+from lagnet.effects.inertia.link_inertia import in_form
 from lagnet.effects.motion import Motion
 from lagnet.effects.transmission import Transmission
 from lagnet.models.corrected.named_effects import NamedEffect, load_before
@@ -238,7 +239,8 @@ class Library:
             return secant_columns(motion, h.joint, known, columns)
         if known and h.effect in BODIES:
             link = motion.n_dof - 1 if h.joint is None else h.joint
-            return columns + body_in_turned_field(motion, link, known)
+            field = body_in_turned_field(motion, link, known)
+            return columns + (in_form(field, dict(h.shape)) if isinstance(field, np.ndarray) else field)
         return columns
 
 

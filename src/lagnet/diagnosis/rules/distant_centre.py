@@ -52,7 +52,7 @@ class DistantCentre(RejectionRule):
     def _distance(self, candidate: Candidate, effect: NamedEffect, lengths: np.ndarray) -> tuple[float, float]:
         """|c| of the changed link and the length that it is compared with [m]; infinite |c| where no mass is left."""
         before: np.ndarray = body_before(candidate.problem, effect)
-        after = before + effect.coordinates()[: before.size]
+        after = before + effect.body_parameters
         modelled = np.linalg.norm(before[1:4]) / before[0] if before[0] > 0 else 0.0
         length = float(max(lengths[effect.joint], lengths.mean(), modelled))
         return (float(np.linalg.norm(after[1:4]) / after[0]) if after[0] > 0 else float("inf")), length

@@ -49,5 +49,5 @@ class ImpossibleDensity(RejectionRule):
     def _density(self, candidate: Candidate, effect: NamedEffect) -> float:
         """Least density of the changed link [kg/m³]; zero where its mass has not grown."""
         before: np.ndarray = body_before(candidate.problem, effect)
-        after = before + effect.coordinates()[: before.size]
+        after = before + effect.body_parameters
         return float(least_density(after)) if after[0] > self.least_growth * before[0] else 0.0

@@ -21,6 +21,7 @@ from lagnet.diagnosis.selection.arm_search import Selection, score_under, search
 from lagnet.diagnosis.selection.below_limits import found_below_limits
 from lagnet.diagnosis.selection.form_exchange import exchange_forms
 from lagnet.diagnosis.selection.gain_exchange import exchange_gains
+from lagnet.diagnosis.selection.link_exchange import exchange_links
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
 from lagnet.effects.catalogue import effect_named
@@ -67,7 +68,7 @@ def _search_once(
     wider = proposals_from_residual(problem, equations, found)
     if wider is not None:
         equations, found = _search_among(problem, wider, noise, last)
-    return exchange_forms(problem, equations, found)
+    return exchange_links(problem, *exchange_forms(problem, equations, found))
 
 
 def _search_among(
@@ -80,11 +81,11 @@ def _search_among(
 
 
 def _carried_over(library: Library, found: Selection, to: Library) -> Selection:
-    """A selection in the indices of another library, without hypotheses that are not in it."""
+    """A selection in the indices of another library, without hypotheses that it lacks; links in their free form."""
     index = {(h.place, h.shape): i for i, h in enumerate(to.hypotheses)}
 
     def kept(chosen: tuple[int, ...]) -> tuple[int, ...]:
-        places = ((h.place, h.shape) for h in (library.hypotheses[i] for i in chosen))
+        places = ((h.place, () if h.law.changes_link else h.shape) for h in (library.hypotheses[i] for i in chosen))
         return tuple(index[p] for p in places if p in index)
 
     return replace(found, arm_wide=kept(found.arm_wide), local=tuple(kept(own) for own in found.local))

@@ -62,7 +62,7 @@ class Payload(Effect):
     def from_coordinates(self, coordinates: np.ndarray) -> Values:
         return self.values(coordinates, {})
 
-    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+    def coordinate_bounds(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return self.bounds({})
 
     def body_parameters(self, values: Mapping[str, float]) -> np.ndarray:

@@ -60,7 +60,7 @@ class JointElasticity(Transmission):
         stiffness = 1.0 / max(compliance, 1e-12)
         return {"K": stiffness, "D": constant * stiffness}
 
-    def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+    def coordinate_bounds(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(2), np.array([1e3, LONGEST])
 
     def shift(self, motion: Motion, joint: int, values: Mapping[str, float]) -> Shift:

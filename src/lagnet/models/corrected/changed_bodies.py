@@ -55,7 +55,7 @@ def named_body_change(n_dof: int, effects: Sequence[NamedEffect]) -> np.ndarray:
     for effect in effects:
         law = effect_named(effect.effect)
         if law.name in ("payload", "link_inertia") and effect.interval is None:
-            change[-1 if effect.joint is None else effect.joint] += law.coordinates(effect.values)
+            change[-1 if effect.joint is None else effect.joint] += law.body_parameters(effect.values)
     return change
 
 

@@ -17,6 +17,7 @@ from lagnet.models.corrected.tilted_bodies import tilted_weight
 from lagnet.types import Trajectory
 
 EDGES = ("t0", "t1")  # start and end of an effect on an interval
+INERTIAL = 10  # parameters of a body
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,17 @@ class NamedEffect:
         """Effect, joint, parameters, interval and recording as a value to be looked up by."""
         return self.effect, self.joint, tuple(self.values.items()), self.interval, self.recording
 
+    @property
+    def is_free_body(self) -> bool:
+        """Whether ten inertial parameters, each by itself, are the first of its coordinates."""
+        law = effect_named(self.effect)
+        return law.is_body and law.coordinates(self.values).size == INERTIAL
+
+    @property
+    def body_parameters(self) -> np.ndarray:
+        """What it adds to the ten inertial parameters of its link, shape (10,)."""
+        return effect_named(self.effect).body_parameters(self.values)
+
     def coordinates(self) -> np.ndarray:
         """x(p), shape (k,): the coordinates of the law, which a refit changes, then t0 and t1 where there are any."""
         return np.append(effect_named(self.effect).coordinates(self.values), self.interval or ())
@@ -57,12 +69,11 @@ class NamedEffect:
         """The effect with other coordinates."""
         interval = None if self.interval is None else (float(x[-2]), float(x[-1]))
         own = x if interval is None else x[:-2]
-        values = {**self.values, **effect_named(self.effect).from_coordinates(own)}
-        return replace(self, values=values, interval=interval)
+        return replace(self, values=effect_named(self.effect).moved(self.values, own), interval=interval)
 
     def coordinate_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds of the coordinates."""
-        lower, upper = effect_named(self.effect).coordinate_bounds()
+        lower, upper = effect_named(self.effect).coordinate_bounds(self.values)
         lower = lower - self.modelled * (np.arange(lower.size) == 0)
         n_edges = len(self.interval or ())
         return np.append(lower, np.full(n_edges, -np.inf)), np.append(upper, np.full(n_edges, np.inf))

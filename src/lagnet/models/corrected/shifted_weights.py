@@ -41,7 +41,7 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
         if tilts:
             columns = columns + np.tensordot(change, _slope(motion, joint, _of_weight, link), 1)
         share = np.asarray(presence(motion, body))[..., None]
-        out += columns @ np.asarray(effect_named(body.effect).coordinates(body.values)) * share
+        out += columns @ effect_named(body.effect).body_parameters(body.values) * share
     return out + _slope(motion, joint, _of_gravity, 0) @ change if tilts else out
 
 

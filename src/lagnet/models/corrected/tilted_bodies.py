@@ -127,7 +127,7 @@ def _carried(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.
     """Torque of bodies that are there throughout: linear in them, so that one Newton-Euler pass serves for all."""
     parameters = np.zeros((motion.n_dof, 10))
     for body in bodies:
-        parameters[link_of(motion, body)] += effect_named(body.effect).coordinates(body.values)
+        parameters[link_of(motion, body)] += effect_named(body.effect).body_parameters(body.values)
     if isinstance(motion.model, Robot):
         turned = motion.model.with_gravity(motion.model.gravity + change)
         return torque_of_change(turned, parameters, motion.q, motion.v, motion.a)
@@ -142,7 +142,7 @@ def link_of(motion: Motion, body: Named) -> int:
 
 def _weight(motion: Motion, body: Named, gravity: np.ndarray) -> np.ndarray:
     link = link_of(motion, body)
-    weights = np.asarray(effect_named(body.effect).coordinates(body.values))
+    weights = effect_named(body.effect).body_parameters(body.values)
     alone = None if f"weights_{link}" in motion.cache else motion.body_alone(link, weights)
     if alone is not None:  # Newton–Euler at rest
         still = np.zeros_like(motion.q)

@@ -68,7 +68,7 @@ def changed_robot(robot: Robot, layer: IdentifiedLayer) -> tuple[Robot, list[Ide
 
 
 def _named_body(change: np.ndarray) -> dict[str, float]:
-    names = [p.name for p in effect_named("link_inertia").parameters]
+    names = [p.name for p in effect_named("link_inertia").free_parameters]
     return dict(zip(names, (float(x) for x in change), strict=True))
 
 

@@ -1,0 +1,84 @@
+"""A link's mass in the place of ten parameters of it: Δπ = Δm d with d from the model, where the evidence prefers it.
+
+Ten free parameters of a link tell little of each where motion shows few of their combinations, and pass for those of
+a neighbour whose torque is nearly the same. One number of the right link predicts as well, and pays less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
+from lagnet.diagnosis.regression.library import Hypothesis
+from lagnet.diagnosis.selection.arm_search import Selection, refit_selection
+from lagnet.effects.inertia.link_inertia import in_form, is_mass_alone, mass_alone
+from lagnet.models.corrected.changed_bodies import inertial_parameters_of
+
+
+def exchange_links(problem: Problem, equations: NormalEquations, found: Selection) -> tuple[NormalEquations, Selection]:
+    """A selection with the mass of a link, the same or another, in the place of each link that it explains as well.
+
+    Args:
+        problem: gives the links as modelled.
+        equations: normal equations of the fitted blocks.
+        found: a selection of their library.
+
+    Returns:
+        The same where no mass does as well; else with the hypotheses that came in.
+    """
+    library = equations.library
+    links = [i for i in found.arm_wide if library.hypotheses[i].law.changes_link]
+    if not links:
+        return equations, found
+    bodies = inertial_parameters_of(problem.nominal)
+    masses = [h for i in library.reaching for h in _masses(library.hypotheses[i], bodies)]
+    wider = _with_masses(equations, masses)
+    best = refit_selection(wider, found)
+    for i in links:
+        best = max((best, *_exchanges(wider, best, i, bodies)), key=lambda s: s.score)
+    chosen = [i for i in best.arm_wide if i >= len(library.hypotheses)]
+    if not chosen:
+        return equations, found
+    narrower = _with_masses(equations, [wider.library.hypotheses[i] for i in chosen])
+    index = {i: len(library.hypotheses) + n for n, i in enumerate(chosen)}
+    return narrower, refit_selection(narrower, replace(best, arm_wide=tuple(index.get(i, i) for i in best.arm_wide)))
+
+
+def _exchanges(equations: NormalEquations, found: Selection, link: int, bodies: np.ndarray) -> Iterator[Selection]:
+    """The selection with each mass that a real link can have in the place of a link."""
+    library = equations.library
+    taken = {library.hypotheses[i].place for i in found.arm_wide if i != link}
+    for k in library.reaching:
+        h = library.hypotheses[k]
+        if is_mass_alone(dict(h.shape)) and h.joint is not None and h.place not in taken:
+            arm_wide = tuple(k if i == link else i for i in found.arm_wide)
+            other = refit_selection(equations, replace(found, arm_wide=arm_wide))
+            if other.fit.coefficients[k][0] > -bodies[h.joint, 0]:
+                yield other
+
+
+def _masses(h: Hypothesis, bodies: np.ndarray) -> list[Hypothesis]:
+    """The forms of a link's hypothesis in which its mass alone is free; none of other hypotheses."""
+    if not h.law.changes_link or h.joint is None:
+        return []
+    return [replace(h, shape=tuple(sorted(shape.items()))) for shape in mass_alone(bodies[h.joint])]
+
+
+def _with_masses(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:
+    """The normal equations with those of masses, whose columns are sums of their links' columns."""
+    old = equations.library
+    library = replace(old, hypotheses=(*old.hypotheses, *masses), widths=(*old.widths, *(1 for _ in masses)))
+    free = {h.place: i for i, h in enumerate(old.hypotheses) if h.law.changes_link and not h.shape}
+    tables = []
+    for joint, blocks in enumerate(equations.grams.joints):
+        width = old.width(joint)
+        sums = np.zeros((width + 1, len(masses)))
+        for n, h in enumerate(masses):
+            sums[old.columns_of(joint, [free[h.place]]), [n]] = in_form(np.eye(10), dict(h.shape))[:, 0]
+        wider = np.hstack([np.eye(width + 1)[:, :-1], sums, np.eye(width + 1)[:, -1:]])
+        tables.append(wider.T @ blocks @ wider)
+    return sum_normal_equations(library, replace(equations.grams, joints=tuple(tables)), equations.limits)
