@@ -164,6 +164,10 @@ class Effect(ABC):
         """What is added to the ten inertial parameters of its link, shape (10,); zeros where it is no body."""
         return np.zeros(10)
 
+    def told(self, values: Mapping[str, float]) -> tuple[str, ...]:
+        """Names of the parameters that say all: those that are fitted; others follow from these and the model."""
+        return tuple(p.name for p in self.free_parameters)
+
     def chosen(self, values: Mapping[str, float]) -> np.ndarray:
         """Which coordinates stand at the value of a special case, shape (k,); none by default."""
         return np.zeros(self.coordinates(values).size, dtype=bool)

@@ -38,6 +38,7 @@ def link_effect(plant, arm):
         real = plant(robot=changed(arm, **difference))
         (found,) = diagnose([real.record(1), real.record(2)], arm, [real.record(3)]).effects
         assert found.effect == LINK
+        assert ("the mass alone" in found.explanation) == ("dmcx" not in found.explanation)
         return found.joint, {p.name: p for p in found.parameters}
 
     return named

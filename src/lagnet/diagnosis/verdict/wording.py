@@ -31,8 +31,8 @@ def explain(
 ) -> str:
     """One or two sentences: effect, joint, parameters, held-out error with and without it, and ties."""
     where = f"at {joint}" if joint else "on the whole arm"
-    shown = values([p for p in parameters if p.name not in law.settled])
     found = {p.name: p.value for p in parameters}
+    shown = values([p for p in parameters if p.name in law.told(found)])
     remark = law.remark(found)
     shown += f" ({remark})" if remark else ""
     title = f"{law.title}, less than modelled," if law.is_less(found) else law.title

@@ -82,6 +82,9 @@ class LinkInertia(LinearEffect):
     def coordinate_bounds(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         return self.bounds(values)
 
+    def told(self, values: Mapping[str, float]) -> tuple[str, ...]:
+        return NAMES[:1] if is_mass_alone(values) else NAMES
+
     def body_parameters(self, values: Mapping[str, float]) -> np.ndarray:
         return _ten(values)
 

@@ -155,15 +155,15 @@ def _on(places: tuple[str | None, ...], findings: Findings) -> str:
 
 
 def _values(effect: dict[str, Any]) -> list[str]:
-    law = CATALOGUE.get(effect["effect"])
-    settled = () if law is None else law.settled
-    parameters = [p for p in effect["parameters"] if p["name"] not in settled]
+    law, found = CATALOGUE.get(effect["effect"]), {p["name"]: p["value"] for p in effect["parameters"]}
+    told = [*found] if law is None else law.told(found)
+    parameters = [p for p in effect["parameters"] if p["name"] in told]
     alone = len(parameters) == 1
     words = [
         ("" if alone else f"{p['name']} ") + f"{with_interval(p['value'], *p['ci95'])} {unit_words(p['unit'])}".rstrip()
         for p in parameters[:SHOWN_PARAMETERS]
     ]
-    form = law.remark({p["name"]: p["value"] for p in effect["parameters"]}) if law is not None and settled else ""
+    form = law.remark(found) if law is not None and law.settled else ""
     words.extend([form] if form else [])
     interval = effect.get("interval_s")
     if interval:
