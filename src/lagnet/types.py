@@ -6,7 +6,7 @@ m, m/s, m/s², N for prismatic ones.
 
 from __future__ import annotations
 
-from typing import Protocol, TypeGuard, runtime_checkable
+from typing import Any, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -114,6 +114,12 @@ def has_regressor(model: object) -> TypeGuard[RigidBodyModel]:
 def is_robot_model(model: object) -> TypeGuard[RobotModel]:
     """Whether a model answers the calls of `RobotModel`; a corrected model does if its nominal model does."""
     return hasattr(model, "with_inertial_parameters")
+
+
+def inertial_parameters_of(model: Any) -> np.ndarray:
+    """π of every link of a model with bodies, shape (dof, 10): a call of robots, a value of learned chains."""
+    found = model.inertial_parameters
+    return np.array(found() if callable(found) else found, dtype=float)
 
 
 def joint_types_of(model: object, n_dof: int) -> tuple[str, ...]:

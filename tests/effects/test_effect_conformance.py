@@ -72,7 +72,8 @@ def coefficients_inside(effect: Effect, shape: dict, size: float, rng: np.random
 
 def holds_its_coefficients(effect: Effect, shape: dict) -> bool:
     """Whether a law is made linear about the values of its coefficients, which are then no further numbers."""
-    return bool(shape) and effect.free_numbers(shape) == 0
+    free = effect.free_parameters
+    return bool(shape) and effect.free_numbers(shape) == 0 and effect.bounds(shape)[0].size == len(free)
 
 
 def only_size_one(effect: Effect, shape: dict) -> bool:

@@ -19,7 +19,7 @@ def link(ur5) -> np.ndarray:
 
 
 def test_another_mass_keeps_the_centre_and_the_inertia_about_it_or_that_per_mass(link) -> None:
-    alone, dense = (link + LAW.body_parameters(LAW.values(np.array([DM]), s)) for s in mass_alone(link))
+    dense, alone = (link + LAW.body_parameters(LAW.values(np.array([DM / link[0]]), s)) for s in mass_alone(link))
     for body in (alone, dense):
         assert body[0] == pytest.approx(link[0] + DM)
         assert body[1:4] / body[0] == pytest.approx(link[1:4] / link[0])
@@ -33,7 +33,7 @@ def test_a_link_without_mass_has_no_centre_to_keep() -> None:
 
 
 @pytest.mark.parametrize("n", [0, 1])
-def test_one_column_is_the_torque_of_a_kilogram(ur5, sweep, link, n: int) -> None:
+def test_one_column_is_the_torque_of_as_much_mass_again(ur5, sweep, link, n: int) -> None:
     motion, shape = sweep(ur5, 3).motion, mass_alone(link)[n]
     column = LAW.columns(motion, JOINT, shape)
     assert column.shape == (*motion.q.shape, 1)
@@ -45,8 +45,14 @@ def test_one_column_is_the_torque_of_a_kilogram(ur5, sweep, link, n: int) -> Non
     assert column @ np.array([DM]) == pytest.approx(LAW.torque(motion, JOINT, LAW.values(np.array([DM]), shape)))
 
 
+def test_more_mass_than_a_link_has_cannot_be_missing(link) -> None:
+    shape = mass_alone(link)[0]
+    assert LAW.plausible(np.array([-0.9]), shape)
+    assert not LAW.plausible(np.array([-1.1]), shape)
+
+
 def test_its_mass_is_its_one_coordinate(link) -> None:
-    effect = NamedEffect(LAW.name, JOINT, LAW.values(np.array([DM]), mass_alone(link)[0]))
+    effect = NamedEffect(LAW.name, JOINT, LAW.values(np.array([DM / link[0]]), mass_alone(link)[0]))
     assert effect.coordinates() == pytest.approx([DM])
     assert not effect.is_free_body
     assert [b.shape for b in effect.coordinate_bounds()] == [(1,), (1,)]

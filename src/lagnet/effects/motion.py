@@ -12,7 +12,7 @@ from lagnet.effects.rest import blurred_sign, held_direction
 from lagnet.rigid_body.changed_bodies_torque import torque_of_change
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import Robot
-from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory
+from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory, inertial_parameters_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +71,11 @@ class Motion:
     def with_load(self, load: Trajectory) -> Motion:
         """The same motion under another model torque."""
         return replace(self, load=load)
+
+    def link_parameters(self, joint: int) -> np.ndarray:
+        """Inertial parameters of the modelled link behind one joint, shape (10,); zeros without any."""
+        has_links = hasattr(self.model, "inertial_parameters")
+        return inertial_parameters_of(self.model)[joint] if has_links else np.zeros(10)
 
     def link_regressor(self, joint: int) -> np.ndarray:
         """Torque per unit of each inertial parameter of the body behind one joint, shape (n, dof, 10)."""

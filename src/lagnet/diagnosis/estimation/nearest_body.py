@@ -7,7 +7,6 @@ from scipy.stats import chi2
 
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.changed_bodies import inertial_parameters_of
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.consistent_fit import fit_consistent
 from lagnet.rigid_body.inertia import (
@@ -16,6 +15,7 @@ from lagnet.rigid_body.inertia import (
     parameters_of_body,
     pseudo_inertia,
 )
+from lagnet.types import inertial_parameters_of
 
 CONSISTENCY = 1e-7  # of the explained error, the least weight of the distance to a prior body
 WEIGHTS = 10.0 ** np.arange(4.0, -0.5, -0.5)  # times the least: from near the prior to near the data

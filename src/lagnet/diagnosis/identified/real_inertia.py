@@ -13,13 +13,14 @@ from lagnet.diagnosis.identified.design import BODY, Design
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.diagnosis.problem.problem import Problem
-from lagnet.models.corrected.changed_bodies import inertial_parameters_of, named_body_change
+from lagnet.models.corrected.changed_bodies import named_body_change
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.modelled import modelled_weight
 from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.sampling import spread_rows
+from lagnet.types import inertial_parameters_of
 
 NOTHING = 1e-7  # of a joint's torque: a smaller term is zero
 POSES = 50  # at which the mass matrix is tested

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection
+from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.joint_search import rich_start, search_joint
 from lagnet.diagnosis.selection.joint_view import JointView, compatible, joint_inefficiency, view_joint
 
@@ -171,10 +172,22 @@ def _score(
         h = library.hypotheses[i]
         if not h.law.plausible(fit.coefficients[i], dict(h.shape)):
             return -np.inf
-    floor = np.maximum.reduce([fit.sse, 1e-3 * scales.noise_power, 1e-12 * scales.torque_power])
-    evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * np.log(np.maximum(floor, 1e-300)))
+    evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * np.log(_counted(library, fit, scales)))
     chosen = (*arm_wide, *(i for own in local for i in own))
     return float(evidence - sum(equations.limits.penalty(*library.freedom[i]) for i in chosen))
+
+
+def _counted(library: Library, fit: Fit, scales: Scales) -> np.ndarray:
+    """Squared error of each joint that counts as evidence, shape (dof,) [N² m²].
+
+    A law that follows from the measured torque explains the noise of its joint as well, of which it is made: what it
+    leaves less than the noise is no evidence.
+    """
+    floor = np.maximum(1e-3 * scales.noise_power, 1e-12 * scales.torque_power)
+    for h in (library.hypotheses[i] for i in fit.selection):
+        if h.law.uses_measured_torque and h.joint is not None:
+            floor[h.joint] = max(floor[h.joint], scales.noise_power[h.joint])
+    return np.maximum.reduce([fit.sse, floor, np.full_like(floor, 1e-300)])
 
 
 def refit_selection(equations: NormalEquations, found: Selection) -> Selection:
@@ -192,16 +205,19 @@ def total_score(equations: NormalEquations, arm_wide: tuple[int, ...], found: Se
 
 
 def _promising(equations: NormalEquations, best: Selection) -> list[int]:
-    """The arm-wide hypotheses with the largest gain Σ_j n_j / g_j ln(E_before / E_after) beside the selected ones."""
-    sigma = _sigma(equations, best, best.scales)
-    taken = {equations.library.hypotheses[i].place for i in best.arm_wide}
+    """Arm-wide hypotheses of the largest gain ½ Σ_j n_j / g_j ln(E_before / E_after) − penalty, one of each place."""
+    library, scales, sigma = equations.library, best.scales, _sigma(equations, best, best.scales)
+    taken = {library.hypotheses[i].place for i in best.arm_wide}
     gains = {}
-    for i in equations.library.reaching:
-        if equations.library.hypotheses[i].place not in taken:
+    for i in library.reaching:
+        if library.hypotheses[i].place not in taken:
             fit = fit_selection(equations, (*best.indices, i), sigma)
-            before, after = (np.maximum(f.sse, 1e-300) for f in (best.fit, fit))  # a joint that rests has no error
-            gains[i] = float(np.sum(equations.samples / best.scales.inefficiency * np.log(before / after)))
-    return sorted((i for i in gains if gains[i] > 0), key=lambda i: -gains[i])[:TRIED]
+            before, after = (_counted(library, f, scales) for f in (best.fit, fit))
+            gain = 0.5 * float(np.sum(equations.samples / scales.inefficiency * np.log(before / after)))
+            if gain > 0:
+                gains[i] = gain - equations.penalties[i]
+    likely = {library.hypotheses[i].place: i for i in sorted(gains, key=lambda i: gains[i])}
+    return sorted(likely.values(), key=lambda i: -gains[i])[:TRIED]
 
 
 def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:

@@ -1,7 +1,8 @@
-"""A link's mass in the place of ten parameters of it: Δπ = Δm d with d from the model, where the evidence prefers it.
+"""A link's mass in the place of a change of a link: Δπ = Δm d with d from the model, where the evidence prefers it.
 
 Ten free parameters of a link tell little of each where motion shows few of their combinations, and pass for those of
-a neighbour whose torque is nearly the same. One number of the right link predicts as well, and pays less.
+a neighbour whose torque is nearly the same. One number of the right link predicts as well, and pays less. The search
+tries a mass whose inertia grows with it; here the inertia about the centre may as well stay as it is.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_no
 from lagnet.diagnosis.regression.library import Hypothesis
 from lagnet.diagnosis.selection.arm_search import Selection, refit_selection
 from lagnet.effects.inertia.link_inertia import in_form, is_mass_alone, mass_alone
-from lagnet.models.corrected.changed_bodies import inertial_parameters_of
+from lagnet.types import inertial_parameters_of
 
 
 def exchange_links(problem: Problem, equations: NormalEquations, found: Selection) -> tuple[NormalEquations, Selection]:
@@ -39,33 +40,31 @@ def exchange_links(problem: Problem, equations: NormalEquations, found: Selectio
     wider = _with_masses(equations, masses)
     best = refit_selection(wider, found)
     for i in links:
-        best = max((best, *_exchanges(wider, best, i, bodies)), key=lambda s: s.score)
+        best = max((best, *_exchanges(wider, best, i)), key=lambda s: s.score)
     chosen = [i for i in best.arm_wide if i >= len(library.hypotheses)]
-    if not chosen:
+    if best.arm_wide == found.arm_wide:
         return equations, found
     narrower = _with_masses(equations, [wider.library.hypotheses[i] for i in chosen])
     index = {i: len(library.hypotheses) + n for n, i in enumerate(chosen)}
     return narrower, refit_selection(narrower, replace(best, arm_wide=tuple(index.get(i, i) for i in best.arm_wide)))
 
 
-def _exchanges(equations: NormalEquations, found: Selection, link: int, bodies: np.ndarray) -> Iterator[Selection]:
-    """The selection with each mass that a real link can have in the place of a link."""
+def _exchanges(equations: NormalEquations, found: Selection, link: int) -> Iterator[Selection]:
+    """The selection with each mass of a link in the place of a changed link."""
     library = equations.library
     taken = {library.hypotheses[i].place for i in found.arm_wide if i != link}
     for k in library.reaching:
         h = library.hypotheses[k]
-        if is_mass_alone(dict(h.shape)) and h.joint is not None and h.place not in taken:
+        if is_mass_alone(dict(h.shape)) and h.place not in taken:
             arm_wide = tuple(k if i == link else i for i in found.arm_wide)
-            other = refit_selection(equations, replace(found, arm_wide=arm_wide))
-            if other.fit.coefficients[k][0] > -bodies[h.joint, 0]:
-                yield other
+            yield refit_selection(equations, replace(found, arm_wide=arm_wide))
 
 
 def _masses(h: Hypothesis, bodies: np.ndarray) -> list[Hypothesis]:
-    """The forms of a link's hypothesis in which its mass alone is free; none of other hypotheses."""
-    if not h.law.changes_link or h.joint is None:
+    """The form that the search did not try of a link's hypothesis, its mass with the inertia as modelled."""
+    if not h.law.changes_link or h.shape or h.joint is None:
         return []
-    return [replace(h, shape=tuple(sorted(shape.items()))) for shape in mass_alone(bodies[h.joint])]
+    return [replace(h, shape=tuple(sorted(shape.items()))) for shape in mass_alone(bodies[h.joint])[1:]]
 
 
 def _with_masses(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:

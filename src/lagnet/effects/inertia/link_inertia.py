@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import final
 
 import numpy as np
@@ -10,9 +10,10 @@ import numpy as np
 from lagnet.effects.effect import LinearEffect, Parameter, Values
 from lagnet.effects.excitation import needs_any_motion
 from lagnet.effects.motion import Motion
-from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com
+from lagnet.rigid_body.inertia import parameters_of_body
 
 FREE, MASS = 0.0, 1.0  # whether all ten parameters are fitted, or the mass alone with the others in its ratio
+NO_LINK = -1.0  # share of a link's mass by which it is less: none is left
 NAMES = ("dm", "dmcx", "dmcy", "dmcz", "dIxx", "dIxy", "dIyy", "dIxz", "dIyz", "dIzz")
 UNITS = ("kg", "kg m", "kg m", "kg m", *("kg m²",) * 6)
 MEANINGS = (
@@ -26,8 +27,8 @@ MEANINGS = (
 class LinkInertia(LinearEffect):
     """A link is heavier, lighter or balanced otherwise than modelled: its regressor times the change of its parameters.
 
-    Where the mass alone is wrong, Δπ = Δm d with d known: one column, Y_k d. The last link is left to `payload`, which
-    is the same torque under the name that users expect.
+    Where the mass alone is wrong, Δπ = s π_k of the modelled link: one column. The last link is left to `payload`,
+    which is the same torque under the name that users expect.
     """
 
     name = "link_inertia"
@@ -52,15 +53,19 @@ class LinkInertia(LinearEffect):
     def regressor(self, motion: Motion, joint: int) -> np.ndarray:
         return motion.link_regressor(joint)
 
+    def shapes(self, motion: Motion, joint: int) -> Sequence[Values]:
+        return {}, *mass_alone(motion.link_parameters(joint))[:1]
+
     def columns(self, motion: Motion, joint: int, shape: Mapping[str, float]) -> np.ndarray:
         return in_form(self.regressor(motion, joint), shape)
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        free = np.full(1 if is_mass_alone(shape) else len(NAMES), np.inf)
-        return -free, free
+        if is_mass_alone(shape):
+            return np.full(1, NO_LINK), np.full(1, np.inf)
+        return np.full(len(NAMES), -np.inf), np.full(len(NAMES), np.inf)
 
     def free_numbers(self, shape: Mapping[str, float]) -> int:
-        return 0  # the ratios to the mass follow from the model
+        return 0  # the direction follows from the model
 
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         if not is_mass_alone(shape):
@@ -76,11 +81,12 @@ class LinkInertia(LinearEffect):
     def moved(self, values: Mapping[str, float], coordinates: np.ndarray) -> Values:
         if not is_mass_alone(values):
             return super().moved(values, coordinates)
-        ratio = float(coordinates[0]) / values["dm"]
+        ratio = float(coordinates[0]) / values["dm"] if values["dm"] else 0.0
         return {**values, **{n: ratio * values[n] for n in NAMES}}
 
     def coordinate_bounds(self, values: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        return self.bounds(values)
+        free = np.full(1 if is_mass_alone(values) else len(NAMES), np.inf)
+        return -free, free
 
     def told(self, values: Mapping[str, float]) -> tuple[str, ...]:
         return NAMES[:1] if is_mass_alone(values) else NAMES
@@ -95,7 +101,7 @@ class LinkInertia(LinearEffect):
         return "the mass alone, its centre as modelled" if is_mass_alone(values) else ""
 
     def plausible(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> bool:
-        return bool(np.all(np.isfinite(coefficients)))
+        return bool(np.all(np.isfinite(coefficients))) and not (is_mass_alone(shape) and coefficients[0] <= NO_LINK)
 
     def excitation(self, motion: Motion, joint: int) -> str | None:
         if joint == motion.n_dof - 1:
@@ -104,18 +110,17 @@ class LinkInertia(LinearEffect):
 
 
 def mass_alone(body: np.ndarray) -> tuple[Values, ...]:
-    """Shapes of a link of another mass: Δπ per kg, its centre of mass as modelled.
+    """Shapes of a link of another mass, its centre of mass as modelled: Δπ where the mass is twice the modelled one.
 
-    The inertia about the centre stays as it is, or grows with the mass. None for a link without mass.
+    The inertia about the centre grows with the mass, or stays as it is. None for a link without mass.
 
     Args:
         body: shape (10,), inertial parameters of the modelled link.
     """
     if not body[0] > 0.0:
         return ()
-    alone = parameters_of_body(1.0, body[1:4] / body[0], np.zeros((3, 3)))
-    directions = [alone, body / body[0]] if np.any(tensor_about_com(body)) else [alone]
-    return tuple({**dict(zip(NAMES, map(float, d), strict=True)), "form": MASS} for d in directions)
+    alone = parameters_of_body(body[0], body[1:4] / body[0], np.zeros((3, 3)))
+    return tuple({**dict(zip(NAMES, map(float, d), strict=True)), "form": MASS} for d in (body, alone))
 
 
 def in_form(columns: np.ndarray, shape: Mapping[str, float]) -> np.ndarray:

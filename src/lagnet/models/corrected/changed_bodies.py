@@ -59,12 +59,6 @@ def named_body_change(n_dof: int, effects: Sequence[NamedEffect]) -> np.ndarray:
     return change
 
 
-def inertial_parameters_of(model: Any) -> np.ndarray:
-    """π of every link of a model with bodies, shape (dof, 10): a call of robots, a value of learned chains."""
-    found = model.inertial_parameters
-    return np.array(found() if callable(found) else found, dtype=float)
-
-
 def are_consistent(robot: RobotModel, effects: Sequence[NamedEffect], more: np.ndarray | None) -> bool:
     """Whether some distribution of mass has every changed body, so that a robot file may hold it.
 
