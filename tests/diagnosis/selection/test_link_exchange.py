@@ -60,6 +60,14 @@ def test_a_lighter_link_is_one_number(link_effect, arm) -> None:
     assert found["dm"].value == pytest.approx(missing_mass(arm, 1, 0.75), rel=RIGHT)
 
 
+@pytest.mark.parametrize("link", [0, 1])
+def test_under_noise_it_is_tied_with_no_law_that_is_made_of_noise(plant, arm, link: int) -> None:
+    real = replace(plant(robot=changed(arm, link, mass=1.15)), noise=0.1)
+    (found,) = diagnose([real.record(1), real.record(2)], arm, [real.record(3)]).effects
+    assert (found.effect, found.joint, found.tied_with) == (LINK, arm.joints[link], ())
+    assert found.parameters[0].value == pytest.approx(missing_mass(arm, link, 1.15), rel=0.2)
+
+
 def test_another_centre_of_mass_leaves_all_ten_free(link_effect) -> None:
     _, found = link_effect(link=1, mass=1.3, shift=(0.03, -0.02, 0.02))
     assert found["form"].value == 0.0

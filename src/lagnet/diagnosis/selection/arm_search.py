@@ -172,22 +172,26 @@ def _score(
         h = library.hypotheses[i]
         if not h.law.plausible(fit.coefficients[i], dict(h.shape)):
             return -np.inf
-    evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * np.log(_counted(library, fit, scales)))
+    evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * _log_errors(library, fit, scales))
     chosen = (*arm_wide, *(i for own in local for i in own))
     return float(evidence - sum(equations.limits.penalty(*library.freedom[i]) for i in chosen))
 
 
-def _counted(library: Library, fit: Fit, scales: Scales) -> np.ndarray:
-    """Squared error of each joint that counts as evidence, shape (dof,) [N² m²].
+def least_counted(library: Library, selection: Sequence[int], scales: Scales) -> np.ndarray:
+    """Squared error of each joint below which less is no evidence, shape (dof,) [N² m²].
 
-    A law that follows from the measured torque explains the noise of its joint as well, of which it is made: what it
-    leaves less than the noise is no evidence.
+    A law that follows from the measured torque explains the noise of its joint as well, of which it is made: there it
+    is that of the noise.
     """
     floor = np.maximum(1e-3 * scales.noise_power, 1e-12 * scales.torque_power)
-    for h in (library.hypotheses[i] for i in fit.selection):
+    for h in (library.hypotheses[i] for i in selection):
         if h.law.uses_measured_torque and h.joint is not None:
             floor[h.joint] = max(floor[h.joint], scales.noise_power[h.joint])
-    return np.maximum.reduce([fit.sse, floor, np.full_like(floor, 1e-300)])
+    return np.maximum(floor, 1e-300)
+
+
+def _log_errors(library: Library, fit: Fit, scales: Scales) -> np.ndarray:
+    return np.log(np.maximum(fit.sse, least_counted(library, fit.selection, scales)))
 
 
 def refit_selection(equations: NormalEquations, found: Selection) -> Selection:
@@ -212,8 +216,8 @@ def _promising(equations: NormalEquations, best: Selection) -> list[int]:
     for i in library.reaching:
         if library.hypotheses[i].place not in taken:
             fit = fit_selection(equations, (*best.indices, i), sigma)
-            before, after = (_counted(library, f, scales) for f in (best.fit, fit))
-            gain = 0.5 * float(np.sum(equations.samples / scales.inefficiency * np.log(before / after)))
+            before, after = (_log_errors(library, f, scales) for f in (best.fit, fit))
+            gain = 0.5 * float(np.sum(equations.samples / scales.inefficiency * (before - after)))
             if gain > 0:
                 gains[i] = gain - equations.penalties[i]
     likely = {library.hypotheses[i].place: i for i in sorted(gains, key=lambda i: gains[i])}
