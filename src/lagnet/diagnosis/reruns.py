@@ -24,7 +24,7 @@ from lagnet.diagnosis.free_bodies import (
     with_nominal,
 )
 from lagnet.diagnosis.identified.borne_out import powers_beside
-from lagnet.diagnosis.identified.fit import identify
+from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
@@ -43,7 +43,7 @@ from lagnet.diagnosis.transients.differing_recordings import (
 from lagnet.diagnosis.transients.separation import separate
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import DiagnosisError
-from lagnet.models.corrected.named_effects import torque_with
+from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 from lagnet.types import is_robot_model
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
@@ -157,11 +157,16 @@ def is_outdone(state: DiagnosisState) -> bool:
 
 
 def is_identified(state: DiagnosisState) -> bool:
-    """Whether bodies and functions of motion without a name explain what is left: then nothing drowns what holds."""
-    found = state.identified
-    if found is None:
-        return False
-    return explains(state.problem, state.problem.holdout, state.effects, found.layer, state.noise)
+    """Whether bodies and functions of motion without a name explain what is left: then nothing drowns what holds.
+
+    Beside the names, or in their place: a wrong name leaves to the layer what it is not.
+    """
+    return _explains(state, state.effects, state.identified) or _explains(state, (), identify(state.problem, ()))
+
+
+def _explains(state: DiagnosisState, effects: Sequence[NamedEffect], found: Identified | None) -> bool:
+    """Whether effects and the layer beside them explain the held-out recordings."""
+    return found is not None and explains(state.problem, state.problem.holdout, effects, found.layer, state.noise)
 
 
 def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[DiagnosisState]:
