@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -164,3 +165,20 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> None:
             header += [f"{name}_{i}" for i in range(columns[name].shape[1])]
             data.append(columns[name])
     np.savetxt(path, np.hstack(data), fmt="%.9g", delimiter=",", header=",".join(header), comments="")
+
+
+def add_torque(path: Path, further: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
+    """Write a recording again with more torque.
+
+    Args:
+        path: of the file.
+        further: torque to be added, shape (n, dof) [N m], from positions and torque, each of shape (n, dof).
+    """
+    header = path.read_text().splitlines()[0].split(",")
+    table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
+    columns = {
+        name: table[:, [n for n, column in enumerate(header) if column.startswith(f"{name}_")]]
+        for name in ("q", "v", "tau")
+    }
+    columns["tau"] = columns["tau"] + further(columns["q"], columns["tau"])
+    write_csv(path, {"time": table[:, 0]} | {name: x for name, x in columns.items() if x.size})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import numpy as np
 from validation.plants.body import joint_names
 from validation.plants.catalogue.plan import Plan
 from validation.plants.catalogue.witness import Witness
-from validation.plants.simulate import write_csv
+from validation.plants.simulate import add_torque
 from validation.texture.remainders import Remainder
 from validation.texture.resample import Texture, draw_texture, lay
 
@@ -38,17 +37,7 @@ class RealTexture:
 
 def add(texture: Texture, path: Path, seed: int) -> None:
     """Write a recording again, its torque with the texture."""
-    header = path.read_text().splitlines()[0].split(",")
-    table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
-    q, tau = (_columns(header, prefix) for prefix in ("q_", "tau_"))
-    table[:, tau] += lay(texture, table[:, q], table[:, tau], seed)
-    columns = {"time": table[:, 0], "q": table[:, q], "tau": table[:, tau]}
-    speed = _columns(header, "v_")
-    write_csv(path, columns | ({"v": table[:, speed]} if speed else {}))
-
-
-def _columns(header: Sequence[str], prefix: str) -> list[int]:
-    return [n for n, name in enumerate(header) if name.startswith(prefix)]
+    add_torque(path, lambda q, tau: lay(texture, q, tau, seed))
 
 
 def seen_beside(shares: np.ndarray, plan: Plan, witness: Witness) -> Witness:
