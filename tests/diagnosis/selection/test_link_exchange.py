@@ -9,6 +9,7 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.selection.arm_search import refit_selection
 from lagnet.diagnosis.selection.link_exchange import exchange_links
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com
@@ -91,3 +92,13 @@ def test_ten_parameters_of_a_link_give_way_to_the_mass_of_the_link_that_differs(
     assert equations.library.hypotheses[chosen].place == (LINK, 1)
     assert equations.library.widths[chosen] == 1
     assert found.score > free.score
+
+
+def test_normal_equations_with_a_mass_are_those_of_its_column(plant, arm) -> None:
+    real = plant(robot=changed(arm, 1, mass=1.3))
+    posed = pose(arm, real.record(1), real.record(2))
+    free = refit_selection(posed.equations, replace(posed.select({}), arm_wide=(posed.index(LINK, 1),)))
+    equations, _ = exchange_links(posed.problem, posed.equations, free)
+    fresh = collect_block_grams(posed.problem, equations.library, posed.problem.fit)
+    for summed, made in zip(equations.grams.joints, fresh.joints, strict=True):
+        assert summed == pytest.approx(made, rel=1e-6, abs=1e-6 * np.abs(made).max())

@@ -74,10 +74,27 @@ def _with_masses(equations: NormalEquations, masses: Sequence[Hypothesis]) -> No
     free = {h.place: i for i, h in enumerate(old.hypotheses) if h.law.changes_link and not h.shape}
     tables = []
     for joint, blocks in enumerate(equations.grams.joints):
-        width = old.width(joint)
-        sums = np.zeros((width + 1, len(masses)))
+        sums = np.zeros((old.width(joint) + 1, len(masses)))
         for n, h in enumerate(masses):
             sums[old.columns_of(joint, [free[h.place]]), [n]] = in_form(np.eye(10), dict(h.shape))[:, 0]
-        wider = np.hstack([np.eye(width + 1)[:, :-1], sums, np.eye(width + 1)[:, -1:]])
-        tables.append(wider.T @ blocks @ wider)
+        tables.append(_bordered(blocks, sums))
     return sum_normal_equations(library, replace(equations.grams, joints=tuple(tables)), equations.limits)
+
+
+def _bordered(blocks: np.ndarray, sums: np.ndarray) -> np.ndarray:
+    """Gram matrices with sums of their columns as further ones, before the residual, shape (B, K + m + 1, K + m + 1).
+
+    Args:
+        blocks: shape (B, K + 1, K + 1), the residual last.
+        sums: weights of the columns, shape (K + 1, m).
+    """
+    rows, (size, more) = np.flatnonzero(sums.any(axis=1)), sums.shape
+    beside = blocks[:, :, rows] @ sums[rows]
+    new = np.arange(size - 1, size - 1 + more)
+    old = np.append(np.arange(size - 1), size - 1 + more)
+    out = np.empty((len(blocks), size + more, size + more))
+    out[:, old[:, None], old] = blocks
+    out[:, old[:, None], new] = beside
+    out[:, new[:, None], old] = beside.transpose(0, 2, 1)
+    out[:, new[:, None], new] = sums[rows].T @ beside[:, rows]
+    return out
