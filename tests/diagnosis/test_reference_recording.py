@@ -7,6 +7,7 @@ import pytest
 from tests.diagnosis.test_free_bodies import friction
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.diagnosis.reference_recording import beyond_one_recording
 from lagnet.recordings.conditioning.condition import condition
@@ -81,13 +82,24 @@ def test_of_two_loads_the_difference_is_told(record, model) -> None:
     assert loads(found) == {2: pytest.approx(MASSES[1] - MASSES[0], rel=NEAR)}
 
 
+def posed(model, fitted, *held_out):
+    fit = condition(fitted)
+    return pose_problem(model, fit, condition(held_out, fit.bandwidth))
+
+
 @pytest.mark.parametrize("mass", [0.0, MASSES[1]])
-def test_links_that_all_recordings_share_are_no_load(record, model, mass) -> None:
-    fit = condition([record(1, mass), record(2, mass)])
-    problem = pose_problem(model, fit, condition([record(3, mass)], fit.bandwidth))
-    assert beyond_one_recording(problem, QUIET) is None
+@pytest.mark.parametrize("knows_shared_links", [True, False])
+def test_links_that_all_recordings_share_are_no_load(record, model, mass, knows_shared_links) -> None:
+    problem = posed(model, [record(1, mass), record(2, mass)], record(3, mass))
+    assert beyond_one_recording(problem, QUIET, identify(problem, ()) if knows_shared_links else None) is None
+
+
+def test_a_load_shows_beside_links_that_all_recordings_share(record, model) -> None:
+    problem = posed(model, [record(1), record(2, MASSES[1])], record(3), record(4, MASSES[1]))
+    found = beyond_one_recording(problem, QUIET, identify(problem, ()))
+    assert found is not None
+    assert [load.recording for load in found.loads] == [1]
 
 
 def test_one_recording_alone_has_no_other_to_differ_from(record, model) -> None:
-    fit = condition([record(1)])
-    assert beyond_one_recording(pose_problem(model, fit, condition([record(3)], fit.bandwidth)), QUIET) is None
+    assert beyond_one_recording(posed(model, [record(1)], record(3)), QUIET, None) is None

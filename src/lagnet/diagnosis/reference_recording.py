@@ -24,6 +24,7 @@ from lagnet.models.corrected.model import CorrectedModel
 from lagnet.types import is_robot_model
 
 ROUNDS = 2  # of links beside loads, and loads beside links
+DIFFERS = 0.9  # of a recording's squared error beside shared links, that a change of its last link leaves at most
 RIDGE = 1e-8  # of the largest singular value: directions of a load that the motion does not show
 
 
@@ -42,15 +43,18 @@ class _Reference:
     error: float
 
 
-def beyond_one_recording(problem: Problem, noise: np.ndarray) -> Differing | None:
+def beyond_one_recording(problem: Problem, noise: np.ndarray, shared: Identified | None) -> Differing | None:
     """Loads of whole recordings against the links as they are beside these; None where they explain no recording.
 
     Args:
         problem: recordings and nominal model as given.
         noise: shape (dof,), noise floor [N m].
+        shared: links and functions of motion that all recordings share; None: none explain anything.
     """
     recordings = sorted({p.recording for p in problem.fit})
     if not is_robot_model(problem.nominal) or not 2 <= len(recordings) <= MANY:
+        return None
+    if not _recordings_differ(problem, noise, shared):
         return None
     tried = [one for n in recordings if (one := _referred_to(problem, n, noise)) is not None]
     best = min(tried, key=lambda one: one.error, default=None)
@@ -60,6 +64,22 @@ def beyond_one_recording(problem: Problem, noise: np.ndarray) -> Differing | Non
         refined = _beside(problem, best.loads, noise)
         best = refined or best
     return _differing(problem, best, noise)
+
+
+def _recordings_differ(problem: Problem, noise: np.ndarray, shared: Identified | None) -> bool:
+    """Whether a change of the last link explains some recording better than links that all of them share.
+
+    Shared links stand between loads that differ: what each recording lacks is then a body on its last link.
+    """
+    if shared is None or shared.layer.bodies is None:
+        return True
+    model = _corrected(problem, shared.layer)
+    for n in {p.recording for p in problem.fit}:
+        residual = _residual(problem, model, n)
+        _, left = _change_of_last_link(problem, n, residual)
+        if np.sum(left**2 / noise**2) < DIFFERS * np.sum(residual**2 / noise**2):
+            return True
+    return False
 
 
 def _referred_to(problem: Problem, reference: int, noise: np.ndarray) -> _Reference | None:

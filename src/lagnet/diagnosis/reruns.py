@@ -17,14 +17,13 @@ import numpy as np
 from lagnet.diagnosis.free_bodies import (
     BETTER,
     against_given,
-    as_given,
     beside_free_bodies,
     explains,
     log_error,
     with_nominal,
 )
 from lagnet.diagnosis.identified.borne_out import powers_beside
-from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
@@ -78,7 +77,7 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
     puzzled = is_puzzled(first)
     if first.problem.given is not None or not (is_identified(first) if puzzled else is_outdone(first)):
         return None
-    free = beside_free_bodies(first.problem, first.noise, identify(first.problem, ()))
+    free = beside_free_bodies(first.problem, first.noise, first.identified_alone)
     if free is None:
         return None
     second = settle_transients(run(free), run)
@@ -95,7 +94,9 @@ def _beside_links_and_loads(first: DiagnosisState, run: Callable[[Problem], Diag
     """
     if not is_puzzled(first, SOME):
         return None
-    second = _beside_loads(first, beyond_one_recording(as_given(first.problem), first.noise), run)
+    given = against_given(first)
+    loads = beyond_one_recording(given.problem, first.noise, given.identified_alone)
+    second = _beside_loads(first, loads, run)
     if second is None or not second.transients:
         return None
     if is_puzzled(first) and not is_puzzled(against_given(second)):
@@ -161,7 +162,7 @@ def is_identified(state: DiagnosisState) -> bool:
 
     Beside the names, or in their place: a wrong name leaves to the layer what it is not.
     """
-    return _explains(state, state.effects, state.identified) or _explains(state, (), identify(state.problem, ()))
+    return _explains(state, state.effects, state.identified) or _explains(state, (), state.identified_alone)
 
 
 def _explains(state: DiagnosisState, effects: Sequence[NamedEffect], found: Identified | None) -> bool:

@@ -121,6 +121,14 @@ class DiagnosisState:
         return self.layers[key]
 
     @property
+    def identified_alone(self) -> Identified | None:
+        """What the fitted recordings determine in the place of all names; None where nothing."""
+        key = self.problem, "alone"
+        if key not in self.layers:
+            self.layers[key] = identify(self.problem, ())
+        return self.layers[key]
+
+    @property
     def sensor_noise(self) -> np.ndarray:
         """Noise floor without the error that the nominal model is known to make, shape (dof,) [N m]."""
         known = 0.0 if self.problem.missed is None else self.problem.missed
