@@ -57,6 +57,9 @@ def test_what_one_load_is_beyond_another_has_mass_and_first_moment_of_both() -> 
         ([(1, 1.0, CENTRE)], (TWO, 1.0, CENTRE), True),  # beyond what the first has
         ([(0, 2.0, CENTRE), (1, 3.0, CENTRE)], (TWO, 1.0, CENTRE), True),  # with what the model's last link lacks
         ([(0, 3.0, CENTRE), (1, 2.0, CENTRE)], (TWO, 1.0, CENTRE), False),
+        ([(None, 2.0, -CENTRE), (1, 1.0, CENTRE)], (TWO, 1.0, CENTRE), True),  # both have two kilograms
+        ([(None, 1.0, CENTRE), (1, 2.0, CENTRE)], (TWO, 1.0, CENTRE), False),
+        ([(None, 1.0, CENTRE)], (TWO, 1.0, CENTRE), False),
         ([], None, True),
         ([(None, 2.0, CENTRE)], None, True),  # both recordings have it: the model's last link
         ([(1, 0.4, CENTRE)], None, False),
