@@ -10,8 +10,9 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.diagnose import diagnose
+from lagnet.diagnosis.free_bodies import explains
 from lagnet.diagnosis.identified.fit import identify
-from lagnet.diagnosis.reruns import MUCH, is_outdone, on_one_clock
+from lagnet.diagnosis.reruns import MUCH, is_identified, is_outdone, on_one_clock
 from lagnet.diagnosis.settings import DecisionLimits
 from lagnet.diagnosis.unexplained.remainder import remainder_of, remainder_sizes
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -31,7 +32,15 @@ def as_state(posed, effects) -> Any:
     after = remainder_of(posed.problem, effects)
     sizes = remainder_sizes(posed.problem, after, posed.noise)
     found = identify(posed.problem, effects)
-    return SimpleNamespace(problem=posed.problem, effects=effects, sizes=sizes, identified=found)
+    alone = identify(posed.problem, ())
+    return SimpleNamespace(
+        problem=posed.problem,
+        effects=effects,
+        sizes=sizes,
+        noise=posed.noise,
+        identified=found,
+        identified_alone=alone,
+    )
 
 
 @pytest.mark.parametrize(("factor", "law", "outdone"), [(1.3, friction, True), (1.0, swaying, False)])
@@ -54,6 +63,17 @@ def test_what_names_explain_asks_for_no_links(plant, arm) -> None:
     posed = pose(arm, real.record(1), real.record(2))
     candidate = posed.candidate(posed.select({j: ["coulomb_friction"] for j in range(3)}))
     assert not is_outdone(as_state(posed, candidate.effects))
+
+
+@pytest.mark.parametrize("delta", [0.0, 0.4])
+def test_links_explain_recordings_whatever_was_named_before(plant, arm, delta: float) -> None:
+    """Beside an encoder offset that is not there the layer leaves much; in its place it leaves the noise."""
+    links = arm.inertial_parameters() * np.array([1.5, 0.7, 1.4])[:, None]
+    posed = pose(arm, *(plant(robot=arm.with_inertial_parameters(links)).record(seed) for seed in (1, 2)))
+    state = as_state(posed, (NamedEffect("encoder_offset", 1, {"delta": delta}),))
+    beside = explains(posed.problem, posed.problem.holdout, state.effects, state.identified.layer, posed.noise)
+    assert beside == (delta == 0.0)
+    assert is_identified(state)
 
 
 @pytest.mark.slow
