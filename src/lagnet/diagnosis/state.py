@@ -115,17 +115,19 @@ class DiagnosisState:
     @property
     def identified(self) -> Identified | None:
         """What the fitted recordings determine beside the named effects, whatever its cause; None where nothing."""
-        key = self.problem, self.events, tuple(e.key for e in self.effects)
-        if key not in self.layers:
-            self.layers[key] = identify(lasting(self.problem, self.events), self.effects)
-        return self.layers[key]
+        return self._identified_beside(self.events, self.effects)
 
     @property
     def identified_alone(self) -> Identified | None:
         """What the fitted recordings determine in the place of all names; None where nothing."""
-        key = self.problem, "alone"
+        return self._identified_beside((), ())
+
+    def _identified_beside(
+        self, events: tuple[EventInterval, ...], effects: tuple[NamedEffect, ...]
+    ) -> Identified | None:
+        key = self.problem, events, tuple(e.key for e in effects)
         if key not in self.layers:
-            self.layers[key] = identify(self.problem, ())
+            self.layers[key] = identify(lasting(self.problem, events), effects)
         return self.layers[key]
 
     @property

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 PARAMETER_NAMES = ("m", "mc_x", "mc_y", "mc_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_yz", "I_zz")
+BODY = len(PARAMETER_NAMES)  # numbers that a body is
 _TENSOR = np.tril_indices(3)  # I_xx, I_xy, I_yy, I_xz, I_yz, I_zz: the lower triangle by rows
 
 

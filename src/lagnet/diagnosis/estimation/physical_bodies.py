@@ -10,8 +10,7 @@ from lagnet.diagnosis.estimation.gauss_newton import GaussNewton
 from lagnet.diagnosis.estimation.nearest_body import body_before, nearest_body
 from lagnet.diagnosis.regression.normal_equations import bounded_step, inverse, leaves_open, normal
 from lagnet.effects.catalogue import effect_named
-from lagnet.models.corrected.named_effects import INERTIAL
-from lagnet.rigid_body.inertia import is_physically_consistent
+from lagnet.rigid_body.inertia import BODY, is_physically_consistent
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +107,7 @@ def _body_to_move(tangent: _Tangent, x: np.ndarray, tried: set[int]) -> int | No
 
 
 def _own(work: GaussNewton, x: np.ndarray, n: int) -> np.ndarray:
-    return np.arange(x.size)[work.slots.of(n)][:INERTIAL]  # the edges of a load that is carried for a while follow
+    return np.arange(x.size)[work.slots.of(n)][:BODY]  # the edges of a load that is carried for a while follow
 
 
 def _near(tangent: _Tangent, x: np.ndarray, n: int) -> np.ndarray:

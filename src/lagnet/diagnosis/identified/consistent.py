@@ -12,11 +12,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lagnet.diagnosis.identified.design import BODY, Design
+from lagnet.diagnosis.identified.design import Design
 from lagnet.diagnosis.identified.evidence import JointEquations
 from lagnet.diagnosis.identified.folds import Choice, block_folds
 from lagnet.rigid_body.consistent_fit import fit_consistent
-from lagnet.rigid_body.inertia import from_pseudo_inertia, parameters_of_body, pseudo_inertia
+from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
 NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: that which predicts held-out blocks best
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for

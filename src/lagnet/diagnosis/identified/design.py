@@ -11,9 +11,9 @@ import numpy as np
 from lagnet.diagnosis.identified.dictionary import USUAL, TermGroup
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.models.corrected.motion_terms import MotionTerm, Rest
+from lagnet.rigid_body.inertia import BODY
 from lagnet.types import Trajectory
 
-BODY = 10  # inertial parameters of a link
 RESTING = 0.01  # of a joint's usual largest speed: below, it is at rest
 ROUNDING = 1e-9  # of the largest column: a smaller one is zero
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagnet.diagnosis.identified.consistent import consistent_unknowns, squared_errors
-from lagnet.diagnosis.identified.design import BODY, Design
+from lagnet.diagnosis.identified.design import Design
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.diagnosis.problem.problem import Problem
@@ -20,6 +20,7 @@ from lagnet.models.corrected.modelled import modelled_weight
 from lagnet.models.corrected.motion_terms import INERTIA, MotionTerm, Rest
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.sampling import spread_rows
+from lagnet.rigid_body.inertia import BODY
 from lagnet.types import inertial_parameters_of
 
 NOTHING = 1e-7  # of a joint's torque: a smaller term is zero

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -87,6 +87,10 @@ class Library:
         """Some of the hypotheses alone, in their order."""
         picked = tuple(indices)
         return Library(tuple(self.hypotheses[i] for i in picked), tuple(self.widths[i] for i in picked), self.n_dof, ())
+
+    def with_more(self, hypotheses: Sequence[Hypothesis], widths: Sequence[int]) -> Library:
+        """The library with further hypotheses behind its own, each of so many columns."""
+        return replace(self, hypotheses=(*self.hypotheses, *hypotheses), widths=(*self.widths, *widths))
 
     @cached_property
     def reaching(self) -> tuple[int, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection
 from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.joint_search import rich_start, search_joint
-from lagnet.diagnosis.selection.joint_view import JointView, compatible, joint_inefficiency, view_joint
+from lagnet.diagnosis.selection.joint_view import JointView, compatible, joint_inefficiency, least_error, view_joint
 
 TRIED = 4  # arm-wide hypotheses that are searched in full at each step
 PASSES = 2  # alternations between arm-wide coefficients and local selections
@@ -183,11 +183,11 @@ def least_counted(library: Library, selection: Sequence[int], scales: Scales) ->
     A law that follows from the measured torque explains the noise of its joint as well, of which it is made: there it
     is that of the noise.
     """
-    floor = np.maximum(1e-3 * scales.noise_power, 1e-12 * scales.torque_power)
+    floor = least_error(scales.noise_power, scales.torque_power)
     for h in (library.hypotheses[i] for i in selection):
         if h.law.uses_measured_torque and h.joint is not None:
             floor[h.joint] = max(floor[h.joint], scales.noise_power[h.joint])
-    return np.maximum(floor, 1e-300)
+    return floor
 
 
 def _log_errors(library: Library, fit: Fit, scales: Scales) -> np.ndarray:

@@ -39,11 +39,7 @@ def exchange_forms(problem: Problem, equations: NormalEquations, found: Selectio
         return equations, found
     library = equations.library
     fresh = {i: len(library.hypotheses) + n for n, i in enumerate(sharper)}
-    wider = replace(
-        library,
-        hypotheses=(*library.hypotheses, *sharper.values()),
-        widths=(*library.widths, *(library.widths[i] for i in sharper)),
-    )
+    wider = library.with_more([*sharper.values()], [library.widths[i] for i in sharper])
     grams = collect_block_grams(problem, wider, problem.fit)
     equations = sum_normal_equations(wider, grams, problem.limits)
     found = refit_selection(equations, found)

@@ -81,11 +81,11 @@ def _search_among(
 
 
 def _carried_over(library: Library, found: Selection, to: Library) -> Selection:
-    """A selection in the indices of another library, without hypotheses that it lacks; links in their free form."""
+    """A selection in the indices of another library, without hypotheses that it lacks."""
     index = {(h.place, h.shape): i for i, h in enumerate(to.hypotheses)}
 
     def kept(chosen: tuple[int, ...]) -> tuple[int, ...]:
-        places = ((h.place, () if h.law.changes_link else h.shape) for h in (library.hypotheses[i] for i in chosen))
+        places = ((h.place, h.shape) for h in (library.hypotheses[i] for i in chosen))
         return tuple(index[p] for p in places if p in index)
 
     return replace(found, arm_wide=kept(found.arm_wide), local=tuple(kept(own) for own in found.local))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, statistical_inefficiency
 from lagnet.diagnosis.regression.joint_system import JointSystem, joint_system
@@ -64,7 +65,7 @@ class JointView:
     @property
     def least_error(self) -> float:
         """Squared error below which two selections are alike [N² m²]."""
-        return max(1e-3 * self.noise_power, 1e-12 * self.torque_power, 1e-300)
+        return float(least_error(self.noise_power, self.torque_power))
 
     def scores_with_each(self, selection: Sequence[int]) -> np.ndarray:
         """log P(S ∪ {k}) for every hypothesis k of the joint, shape (m,); −∞ where k may not stand beside S."""
@@ -98,6 +99,11 @@ class JointView:
     def least_gain(self) -> float:
         """r E_nominal: squared error that an effect must explain to be tested beside larger ones [N² m²]."""
         return self.limits.least_of_residual * self.system.power
+
+
+def least_error(noise_power: ArrayLike, torque_power: ArrayLike) -> np.ndarray:
+    """Squared error below which less is none, of each joint [N² m²]: a thousandth of the noise."""
+    return np.maximum(np.maximum(np.multiply(1e-3, noise_power), np.multiply(1e-12, torque_power)), 1e-300)
 
 
 def view_joint(

@@ -70,7 +70,7 @@ def _masses(h: Hypothesis, bodies: np.ndarray) -> list[Hypothesis]:
 def _with_masses(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:
     """The normal equations with those of masses, whose columns are sums of their links' columns."""
     old = equations.library
-    library = replace(old, hypotheses=(*old.hypotheses, *masses), widths=(*old.widths, *(1 for _ in masses)))
+    library = old.with_more(masses, [1] * len(masses))
     free = {h.place: i for i, h in enumerate(old.hypotheses) if h.law.changes_link and not h.shape}
     tables = []
     for joint, blocks in enumerate(equations.grams.joints):

@@ -13,6 +13,7 @@ import numpy as np
 
 from lagnet.effects.motion import Motion
 from lagnet.effects.own_terms import beside_own_terms
+from lagnet.rigid_body.inertia import BODY
 
 DOWN = np.array([0.0, 0.0, -1.0])  # gravity in the level frame
 STARTS = (DOWN, -DOWN, *np.eye(3)[:2], *-np.eye(3)[:2])
@@ -22,7 +23,6 @@ WORTH = 0.01  # of the torque's power: with less left on a level base there is n
 STEPS = 12
 SETTLED = 1e-4  # rad
 RIDGE = 1e-9  # of a column's own power, for what the motion leaves open
-BODY = 10  # inertial parameters
 
 
 def far_direction(weight: np.ndarray, fields: np.ndarray, inertia: np.ndarray, motion: Motion) -> np.ndarray | None:

@@ -53,9 +53,8 @@ def named_body_change(n_dof: int, effects: Sequence[NamedEffect]) -> np.ndarray:
     """Δπ that payload and link changes add to the ten inertial parameters of every link, shape (dof, 10)."""
     change = np.zeros((n_dof, 10))
     for effect in effects:
-        law = effect_named(effect.effect)
-        if law.name in ("payload", "link_inertia") and effect.interval is None:
-            change[-1 if effect.joint is None else effect.joint] += law.body_parameters(effect.values)
+        if effect_named(effect.effect).is_body and effect.interval is None:
+            change[-1 if effect.joint is None else effect.joint] += effect.body_parameters
     return change
 
 

@@ -14,10 +14,10 @@ from lagnet.models.corrected.presence import presence
 from lagnet.models.corrected.shifted_bodies import shifted_bodies
 from lagnet.models.corrected.shifted_weights import shifted_weight
 from lagnet.models.corrected.tilted_bodies import tilted_weight
+from lagnet.rigid_body.inertia import BODY
 from lagnet.types import Trajectory
 
 EDGES = ("t0", "t1")  # start and end of an effect on an interval
-INERTIAL = 10  # parameters of a body
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class NamedEffect:
     def is_free_body(self) -> bool:
         """Whether ten inertial parameters, each by itself, are the first of its coordinates."""
         law = effect_named(self.effect)
-        return law.is_body and law.coordinates(self.values).size == INERTIAL
+        return law.is_body and law.coordinates(self.values).size == BODY
 
     @property
     def body_parameters(self) -> np.ndarray:
