@@ -35,6 +35,14 @@ def test_friction_of_a_regularised_contact_rises_in_a_line(plant, arm, at) -> No
     assert not any(left.above_noise for left in result.verdict.unexplained)
 
 
+@pytest.mark.parametrize("seed", [51, 53, 55, 57])
+def test_the_form_of_friction_is_not_read_off_single_samples(plant, arm, at, seed: int) -> None:
+    """Reversals between two samples: the few that fall into one are of encoder noise, and no straight line."""
+    real = plant(at(1, lambda q, v, a, t: 40.0 * np.clip(v / 1e-4, -1.0, 1.0)))
+    problem = fit_sign_model(pose(arm, real.record(seed), real.record(seed + 1)).problem)
+    assert problem.straight is None
+
+
 @pytest.mark.parametrize(
     "law",
     [lambda q, v, a, t: 4.0 * v, lambda q, v, a, t: 3.0 * a, lambda q, v, a, t: 3.0 * v * np.abs(v)],

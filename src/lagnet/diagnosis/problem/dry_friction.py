@@ -54,7 +54,17 @@ def _best_sign(problem: Problem, joint: int) -> SignFit | None:
         return None
     curve = _refined(error, curve, max(widest, blurred))
     line = _refined(error, SignFit(LINE * curve.slow, True, np.inf), LINE * max(widest, blurred))
-    return line if line.error < CLEAR * curve.error else curve
+    return line if line.error < CLEAR * curve.error and _is_sampled(problem, joint, line.slow) else curve
+
+
+def _is_sampled(problem: Problem, joint: int, slow: float) -> bool:
+    """Whether at least half of the reversals have a sample with |v| ≤ ε: else single samples decide on the form of s."""
+    entered = jumped = 0
+    for piece in problem.fit:
+        side = np.where(np.abs(piece.v[:, joint]) > slow, np.sign(piece.v[:, joint]), 0.0)
+        entered += np.count_nonzero((side[1:] == 0.0) & (side[:-1] != 0.0))
+        jumped += np.count_nonzero(side[1:] * side[:-1] < 0.0)
+    return entered >= jumped
 
 
 def _refined(error: Callable[[float, bool], float], sign: SignFit, widest: float) -> SignFit:
