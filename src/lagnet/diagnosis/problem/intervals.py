@@ -9,6 +9,7 @@ from lagnet.diagnosis.problem.problem import Problem, Segment
 
 SMEAR = 1.5  # periods of the bandwidth by which the filter widens an interval
 MOST = 0.75  # of the valid samples that may be set aside
+ALL = 0.9  # of a recording: what acts for longer has nothing in it from which it stands out
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,12 @@ def too_much(problem: Problem, masked: Problem) -> bool:
         sum(p.counts.sum() for p in getattr(masked, name)) < (1.0 - MOST) * sum(p.counts.sum() for p in pieces)
         for name, pieces in (("fit", problem.fit), ("holdout", problem.holdout))
     )
+
+
+def fills(problem: Problem, event: EventInterval) -> bool:
+    """Whether an event covers its recording."""
+    pieces = [p for p in (problem.holdout if event.held_out else problem.fit) if p.recording == event.recording]
+    return event.end - event.start > ALL * float(pieces[-1].time[-1] - pieces[0].time[0])
 
 
 def lasting(problem: Problem, events: Sequence[EventInterval]) -> Problem:

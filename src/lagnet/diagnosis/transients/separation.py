@@ -9,7 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.estimation.misspecification import Intervals
 from lagnet.diagnosis.estimation.refit import Refit, refit
-from lagnet.diagnosis.problem.intervals import EventInterval, set_aside
+from lagnet.diagnosis.problem.intervals import EventInterval, fills, set_aside
 from lagnet.diagnosis.problem.problem import OVERSAMPLING, Problem
 from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
@@ -46,10 +46,12 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
         sigma: shape (dof,), what they leave at each joint [N m].
         scan: the intervals.
     """
-    pairs = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
+    found_in = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
+    lasting = [s for s, f in found_in if _convinces(f) and not _stands_beside(problem, persistent, sigma, s, scan)]
+    pairs = [(s, f) for s, f in found_in if not any(s is t for t in lasting)]
     good = [(s, f) for s, f in pairs if _convinces(f)]
-    bursts = _bursts(pairs)
-    others = (s for s in scan.events if not any(s is t for t in (*bursts, *(t for t, _ in good))))
+    explained = (*lasting, *_bursts(pairs), *(s for s, _ in good))
+    others = (s for s in scan.events if not any(s is t for t in explained))
     unnamed = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
     together = refit(set_aside(problem, unnamed), (*persistent, *(f.effect for _, f in good)), sigma)
     n = len(persistent)
@@ -74,6 +76,20 @@ def within_recording(problem: Problem, effect: NamedEffect, intervals: Intervals
     start, end = (float(t) for t in np.clip(edges, min(times) - beyond, max(times) + beyond))
     moved = {name: (t, t) for name, t, was in zip(EDGES, (start, end), edges, strict=True) if t != was}
     return replace(effect, interval=(start, end)), {**intervals, **moved}
+
+
+def _stands_beside(
+    problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndarray, event: EventInterval, scan: Scan
+) -> bool:
+    """Whether what acts all along a recording also does where all that lasts is fitted to that recording, too.
+
+    Laws of the other recordings alone are extrapolated to it, and may leave there what they need not. What acts for
+    a while stands out from the rest of its recording.
+    """
+    if not fills(problem, event):
+        return True
+    known = set_aside(problem, [s for s in scan.events if s is not event])
+    return _convinces(fit_event(problem, refit(known, persistent, sigma).effects, event, scan))
 
 
 def _convinces(fit: EventFit) -> bool:
