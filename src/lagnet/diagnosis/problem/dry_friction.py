@@ -58,7 +58,7 @@ def _best_sign(problem: Problem, joint: int) -> SignFit | None:
 
 
 def _is_sampled(problem: Problem, joint: int, slow: float) -> bool:
-    """Whether at least half of the reversals have a sample with |v| ≤ ε: else single samples decide on the form of s."""
+    """Whether half of the reversals or more have a sample with |v| ≤ ε: else single samples decide on the form of s."""
     entered = jumped = 0
     for piece in problem.fit:
         side = np.where(np.abs(piece.v[:, joint]) > slow, np.sign(piece.v[:, joint]), 0.0)
