@@ -64,7 +64,7 @@ def _is_sampled(problem: Problem, joint: int, slow: float) -> bool:
         side = np.where(np.abs(piece.v[:, joint]) > slow, np.sign(piece.v[:, joint]), 0.0)
         entered += np.count_nonzero((side[1:] == 0.0) & (side[:-1] != 0.0))
         jumped += np.count_nonzero(side[1:] * side[:-1] < 0.0)
-    return entered >= jumped
+    return bool(entered >= jumped)
 
 
 def _refined(error: Callable[[float, bool], float], sign: SignFit, widest: float) -> SignFit:
