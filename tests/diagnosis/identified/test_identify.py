@@ -172,3 +172,21 @@ def test_no_friction_exceeds_the_load_that_it_is_told_of() -> None:
     assert max(per_load.values(), default=0.0) <= 1.0
     left = unseen_errors(problem, along(corrected(problem, found)))
     assert left[2] < unseen_errors(problem, lambda p: p.load)[2]
+
+
+@pytest.mark.parametrize("apart", [1, 2])
+def test_friction_of_a_motor_that_also_turns_with_another_joint_is_predicted(apart: int) -> None:
+    """As in wrists driven through hollow shafts: the last motor turns with both joints before it."""
+    arm = random_arm(4, seed=5, kinds=("revolute",))
+    size = usual_load(arm)
+
+    def turned(q, v, a, load):
+        drag = 0.5 * size[3] * np.tanh((v[:, 3] - v[:, 3 - apart]) / 0.01)
+        out = np.zeros_like(q)
+        out[:, 3], out[:, 3 - apart] = drag, -drag
+        return out
+
+    problem = posed(arm, Plant(arm, [turned]), 40.0)
+    model = corrected(problem, identify(problem, ()))
+    before, after = unseen_errors(problem, lambda p: p.load), unseen_errors(problem, along(model))
+    assert np.all(after[[3, 3 - apart]] < MUCH_LESS * before[[3, 3 - apart]])

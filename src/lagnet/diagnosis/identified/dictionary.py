@@ -13,6 +13,7 @@ from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTer
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
+APART = (1, 2)  # joints from one to another that its motor also turns with: the last of a wrist turns with both others
 COARSE = 4  # half waves over the range of a joint; shorter ones have a prior of their own
 USUAL = 0.98  # quantile of |v| taken for the usual largest speed
 
@@ -51,7 +52,8 @@ def term_groups(problem: Problem) -> tuple[TermGroup, ...]:
     speed = np.maximum(np.quantile(np.abs(v), USUAL, axis=0), 1e-9)
     groups = [g for j in range(problem.n_dof) for g in _of_joint(j, float(speed[j]), float(high[j] - low[j]))]
     groups += [g for j in range(problem.n_dof) for g in _over_position(j, float(low[j]), float(high[j]))]
-    return (*groups, *(g for j in range(1, problem.n_dof) for g in _of_pair(j - 1, j)))
+    pairs = ((j - k, j) for k in APART for j in range(k, problem.n_dof))
+    return (*groups, *(g for pair in pairs for g in _of_pair(*pair)))
 
 
 def lag_groups(problem: Problem, joints: Collection[int]) -> tuple[TermGroup, ...]:
@@ -80,7 +82,7 @@ def _over_position(j: int, low: float, high: float) -> list[TermGroup]:
 
 
 def _of_pair(first: int, second: int) -> list[TermGroup]:
-    """Friction and rotor of a motor that is coupled to two neighbouring joints, at any ratio."""
+    """Friction and rotor of a motor that is coupled to two joints: at any ratio, dry friction at ±1."""
     smooth = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_viscous", "cross_inertia"))
     dry = tuple(MotionTerm(kind, first, other=second) for kind in ("cross_dry_sum", "cross_dry_difference"))
     return [TermGroup("tie", terms, pair=(first, second), optional=True) for terms in (smooth, dry)]
