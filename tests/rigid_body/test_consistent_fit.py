@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from lagnet.rigid_body.consistent_fit import fit_consistent
+from lagnet.rigid_body.consistent_fit import consistent_path, fit_consistent
 from lagnet.rigid_body.inertia import (
     from_log_cholesky,
     is_physically_consistent,
@@ -82,6 +82,17 @@ def test_what_the_data_leave_open_stays_at_the_prior():
 
 def test_no_data_give_the_prior():
     assert fit_consistent(np.zeros((10, 10)), np.zeros(10), PRIOR) == pytest.approx(PRIOR)
+
+
+@pytest.mark.parametrize("falls", [10.0, 3.0, 100.0])
+def test_along_a_path_of_weights_the_bodies_are_those_of_each_weight_alone(falls):
+    robot = random_arm(2, seed=4, kinds=("revolute",))
+    rows, torque = problem(robot)
+    torque = torque + 0.1 * np.random.default_rng(2).normal(size=torque.shape)
+    gram, moment, prior = rows.T @ rows, rows.T @ torque, np.tile(PRIOR, (2, 1))
+    weights = 10.0 / falls ** np.arange(3)
+    for bodies, weight in zip(consistent_path(gram, moment, prior, weights), weights, strict=True):
+        np.testing.assert_allclose(bodies, fit_consistent(gram, moment, prior, weight), rtol=1e-6, atol=1e-9)
 
 
 def test_the_slope_used_by_other_fits_is_that_of_the_cost():

@@ -8,6 +8,8 @@ Sources: Wensing 2018 (convexity); Rucker 2022.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
 from lagnet.rigid_body.inertia import from_pseudo_inertia, pseudo_inertia
@@ -16,6 +18,7 @@ RELATIVE_WEIGHT = (
     1e-12  # of the explained cost: noise-free parameters return to 1e-7, and it still settles what the data leave open
 )
 STAGES = 10.0  # factor between the weights along the path
+ROUNDING = 1e-9  # of a stage
 TOLERANCE = 1e-12  # of the decrement, in units of the weight
 MAX_STEPS = 60  # Newton steps a weight; a handful suffice
 
@@ -37,21 +40,42 @@ def fit_consistent(gram: np.ndarray, moment: np.ndarray, prior: np.ndarray, weig
     Raises:
         ValueError: shapes that do not fit, or a prior that is no body.
     """
-    prior = np.asarray(prior, dtype=float)
-    bodies = np.atleast_2d(prior)
+    if weight is None:
+        _, scaled, pull = _in_units_of_the_prior(gram, moment, prior)
+        explained = 0.5 * float(pull @ np.linalg.lstsq(scaled, pull, rcond=None)[0])
+        weight = RELATIVE_WEIGHT * max(explained, np.finfo(float).tiny)
+    return next(consistent_path(gram, moment, prior, [weight]))
+
+
+def consistent_path(
+    gram: np.ndarray, moment: np.ndarray, prior: np.ndarray, weights: Iterable[float]
+) -> Iterator[np.ndarray]:
+    """The bodies of `fit_consistent` for one weight after the other, each the start of the next; weights fall.
+
+    Raises:
+        ValueError: shapes that do not fit, a prior that is no body, or a weight that is not positive.
+    """
+    basis, gram, moment = _in_units_of_the_prior(gram, moment, prior)
+    x, first = np.tile(_UNIT, (moment.size // 10, 1)), float(np.linalg.norm(moment, np.inf))
+    for weight in weights:
+        if weight <= 0:
+            raise ValueError(f"weight is {weight}, expected a positive number")
+        for stage in _path(first, weight):
+            x = _newton(gram, moment, x, stage)
+        first = weight / STAGES
+        yield (basis @ x.ravel()).reshape(np.shape(prior))
+
+
+def _in_units_of_the_prior(
+    gram: np.ndarray, moment: np.ndarray, prior: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Parameters per coordinate x, and G and m of these coordinates."""
+    bodies = np.atleast_2d(np.asarray(prior, dtype=float))
     gram, moment = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
     if gram.shape != (bodies.size, bodies.size) or moment.shape != (bodies.size,):
-        raise ValueError(f"gram {gram.shape} and moment {moment.shape} do not fit a prior of shape {prior.shape}")
+        raise ValueError(f"gram {gram.shape} and moment {moment.shape} do not fit a prior of shape {np.shape(prior)}")
     basis = _basis(bodies)
-    gram, moment = basis.T @ gram @ basis, basis.T @ moment
-    explained = 0.5 * float(moment @ np.linalg.lstsq(gram, moment, rcond=None)[0])
-    final = RELATIVE_WEIGHT * max(explained, np.finfo(float).tiny) if weight is None else weight
-    if final <= 0:
-        raise ValueError(f"weight is {final}, expected a positive number")
-    x = _UNIT_BODY @ np.eye(4).ravel() * np.ones((len(bodies), 1))
-    for stage in _path(float(np.linalg.norm(moment, np.inf)), final):
-        x = _newton(gram, moment, x, stage)
-    return (basis @ x.ravel()).reshape(prior.shape)
+    return basis, basis.T @ gram @ basis, basis.T @ moment
 
 
 def _symmetric_basis() -> np.ndarray:
@@ -67,6 +91,7 @@ def _symmetric_basis() -> np.ndarray:
 
 _SYMMETRIC = _symmetric_basis()
 _UNIT_BODY = _SYMMETRIC.reshape(10, 16)
+_UNIT = _UNIT_BODY @ np.eye(4).ravel()
 
 
 def _basis(bodies: np.ndarray) -> np.ndarray:
@@ -84,15 +109,15 @@ def _basis(bodies: np.ndarray) -> np.ndarray:
 
 def _path(first: float, last: float) -> np.ndarray:
     """Weights from one that holds the bodies near the prior down to the one asked for."""
-    steps = max(0, int(np.ceil(np.log(max(first / last, 1.0)) / np.log(STAGES))))
+    steps = max(0, int(np.ceil(np.log(max(first / last, 1.0)) / np.log(STAGES) - ROUNDING)))
     return last * STAGES ** np.arange(steps, -1, -1, dtype=float)
 
 
 def _newton(gram: np.ndarray, moment: np.ndarray, x: np.ndarray, weight: float) -> np.ndarray:
     """Damped Newton steps to the minimum for one weight; x has shape (k, 10) and stays inside the cone."""
     for _ in range(MAX_STEPS):
-        inverse = np.linalg.inv(np.einsum("bk,kij->bij", x, _SYMMETRIC))
-        pull = _UNIT_BODY @ np.eye(4).ravel() - np.einsum("kij,bij->bk", _SYMMETRIC, inverse)
+        inverse = np.linalg.inv((x @ _UNIT_BODY).reshape(-1, 4, 4))
+        pull = _UNIT - inverse.reshape(-1, 16) @ _UNIT_BODY.T
         gradient = (gram @ x.ravel() - moment) / weight + pull.ravel()
         hessian = gram / weight + _barrier_curvature(inverse)
         step = -np.linalg.solve(hessian, gradient)
@@ -107,9 +132,8 @@ def _newton(gram: np.ndarray, moment: np.ndarray, x: np.ndarray, weight: float) 
 
 def _barrier_curvature(inverse: np.ndarray) -> np.ndarray:
     """Hessian of -log det, block diagonal over bodies."""
-    size = 10 * len(inverse)
-    out = np.zeros((size, size))
-    for b, matrix in enumerate(inverse):
-        turned = (matrix @ _SYMMETRIC @ matrix).reshape(10, 16)
-        out[10 * b : 10 * b + 10, 10 * b : 10 * b + 10] = _UNIT_BODY @ turned.T
-    return out
+    n = len(inverse)
+    turned = inverse[:, None] @ _SYMMETRIC @ inverse[:, None]
+    out = np.zeros((n, 10, n, 10))
+    out[np.arange(n), :, np.arange(n)] = turned.reshape(n, 10, 16) @ _UNIT_BODY.T
+    return out.reshape(10 * n, 10 * n)

@@ -8,7 +8,7 @@ from scipy.stats import chi2
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
-from lagnet.rigid_body.consistent_fit import fit_consistent
+from lagnet.rigid_body.consistent_fit import consistent_path
 from lagnet.rigid_body.inertia import (
     from_pseudo_inertia,
     is_physically_consistent,
@@ -45,12 +45,12 @@ def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.n
     moment = gram @ wanted.ravel()
     least = CONSISTENCY * max(float(wanted.ravel() @ moment), 1e-12)
     try:
-        nearest = fit_consistent(gram, moment, prior, weight=least)
+        bodies = list(consistent_path(gram, moment, prior, least * WEIGHTS))
+        nearest = bodies[-1]
         if np.all(is_physically_consistent(wanted)):
             return nearest
         bound = _lost(gram, nearest - wanted) + WITHIN
-        likely = (fit_consistent(gram, moment, prior, weight=least * more) for more in WEIGHTS)
-        return next((body for body in likely if _lost(gram, body - wanted) <= bound), nearest)
+        return next(body for body in bodies if _lost(gram, body - wanted) <= bound)
     except np.linalg.LinAlgError:
         return np.reshape([_cut_off(body) for body in wanted.reshape(-1, 10)], wanted.shape)
 

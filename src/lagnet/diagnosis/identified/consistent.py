@@ -8,14 +8,15 @@ Source: Wensing 2018, Lee 2020.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design
 from lagnet.diagnosis.identified.evidence import JointEquations
 from lagnet.diagnosis.identified.folds import Choice, block_folds
-from lagnet.rigid_body.consistent_fit import fit_consistent
+from lagnet.rigid_body.consistent_fit import consistent_path
 from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
 NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: that which predicts held-out blocks best
@@ -40,18 +41,15 @@ def consistent_unknowns(
         excite.
     """
     modelled, free = np.asarray(modelled, dtype=float), choice.ridge.x
-    folds, found = block_folds(design), []
     limit = WORSE * squared_errors(design, sums, free)
-    for weight in NATS:
-        try:
-            x, bodies = _constrained(design, sums, choice, modelled, weight)
-            if np.any(squared_errors(design, sums, x) > limit):
-                continue
-            parts = [_constrained(design, f.fitted, choice, modelled, weight)[0] for f in folds]
-        except np.linalg.LinAlgError:
-            continue
-        unseen = sum(squared_errors(design, f.held_out, part) for f, part in zip(folds, parts, strict=True))
-        found.append((x, bodies, np.maximum(unseen, 1e-300)))
+    fits = _constrained(design, sums, choice, modelled)
+    folds = block_folds(design)
+    parts = [_constrained(design, f.fitted, choice, modelled) for f in folds]
+    found = []
+    for (x, bodies), *of_folds in zip(fits, *parts, strict=False):
+        if not np.any(squared_errors(design, sums, x) > limit):
+            errors = (squared_errors(design, f.held_out, part) for f, (part, _) in zip(folds, of_folds, strict=True))
+            found.append((x, bodies, np.maximum(sum(errors), 1e-300)))
     if not found:
         return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
     least = np.min([unseen for _, _, unseen in found], axis=0)
@@ -65,8 +63,9 @@ def squared_errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray
 
 
 def _constrained(
-    design: Design, sums: Sequence[JointEquations], choice: Choice, modelled: np.ndarray, weight: float
-) -> tuple[np.ndarray, np.ndarray]:
+    design: Design, sums: Sequence[JointEquations], choice: Choice, modelled: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The unknowns and Δπ for each weight, as far as numbers allow."""
     n, nb, ridge = design.n_unknowns, design.n_bodies, choice.ridge
     gram, moment = np.zeros((n, n)), np.zeros(n)
     for s, joint, power in zip(sums, design.joints, ridge.variance * choice.inefficiency, strict=True):
@@ -74,14 +73,15 @@ def _constrained(
         moment[joint.unknowns] += s.moment / power
     bodies, others = slice(0, nb), slice(nb, n)
     inner = gram[others, others] + np.diag(ridge.precision[others])
-    refitted = np.linalg.solve(inner, np.column_stack([gram[others, bodies], moment[others]]))
     scale = design.scale[:nb]
-    schur = (gram[bodies, bodies] - gram[bodies, others] @ refitted[:, :-1]) * scale[:, None] * scale
-    reduced = (moment[bodies] - gram[bodies, others] @ refitted[:, -1]) * scale
-    schur = 0.5 * (schur + schur.T)
-    found = fit_consistent(schur, reduced + schur @ modelled.ravel(), rounded(modelled), weight=weight)
-    change = (found - modelled).ravel() * scale
-    return np.concatenate([change, refitted[:, -1] - refitted[:, :-1] @ change]), found - modelled
+    with suppress(np.linalg.LinAlgError):
+        refitted = np.linalg.solve(inner, np.column_stack([gram[others, bodies], moment[others]]))
+        schur = (gram[bodies, bodies] - gram[bodies, others] @ refitted[:, :-1]) * scale[:, None] * scale
+        reduced = (moment[bodies] - gram[bodies, others] @ refitted[:, -1]) * scale
+        schur = 0.5 * (schur + schur.T)
+        for found in consistent_path(schur, reduced + schur @ modelled.ravel(), rounded(modelled), NATS):
+            change = (found - modelled).ravel() * scale
+            yield np.concatenate([change, refitted[:, -1] - refitted[:, :-1] @ change]), found - modelled
 
 
 def rounded(modelled: np.ndarray) -> np.ndarray:
