@@ -63,6 +63,7 @@ class Effect(ABC):
     confused_with: ClassVar[tuple[str, ...]] = ()  # names in the catalogue
     source: ClassVar[str]  # key in docs/references
     contains: ClassVar[tuple[str, ...]] = ()  # effects that are special cases of it: never named beside it
+    sum_of: ClassVar[tuple[str, ...]] = ()  # effects of which it is the sum while the joint moves
     reaches_all: ClassVar[bool] = False  # True: it changes the torque of other joints too
     needs_bodies: ClassVar[bool] = False  # True: only a model with kinematics (URDF, MJCF) can carry it
     stage: ClassVar[Stage] = "torque"

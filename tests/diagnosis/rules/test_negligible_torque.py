@@ -6,7 +6,7 @@ import numpy as np
 from tests.diagnosis.conftest import Plant
 from tests.diagnosis.posed import pose
 
-from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
+from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque, special_case
 
 JOINT = 1
 LARGE, SMALL = 30.0, 0.25  # [N m s/rad], [N m]: a sixtieth of the torque
@@ -57,3 +57,23 @@ def test_however_small_it_stays_where_next_to_nothing_else_is_left(arm, at) -> N
     assert found_alone(arm, "coulomb_friction", drag) == (set(), ("coulomb_friction",))
     gain = at(JOINT, lambda q, v, a, t: share * t)  # as a link that is a little heavier would have it
     assert found_alone(arm, "torque_gain", gain) == ({"torque_gain"}, ())
+
+
+def test_an_offset_takes_the_place_of_a_spring_that_may_have_no_stiffness(plant, arm, at) -> None:
+    real = plant(at(JOINT, lambda q, v, a, t: 2.0 * np.ones_like(v)))
+    posed = pose(arm, real.record(1), real.record(2))
+    candidate = posed.candidate(posed.select({JOINT: ("joint_spring",)}))
+    (gone,) = NegligibleTorque().rejected(candidate)
+    assert [posed.library.hypotheses[i].place for i in gone.instead] == [("torque_offset", JOINT)]
+    left = candidate.without(gone.index, instead=gone.instead)
+    assert [e.effect for e in left.effects] == ["torque_offset"]
+    assert NegligibleTorque().rejected(left) == ()
+
+
+def test_nothing_takes_the_place_of_a_law_without_a_special_case_or_with_one_that_is_excluded(plant, arm) -> None:
+    real = plant()
+    posed = pose(arm, real.record(1), real.record(2))
+    candidate = posed.candidate(posed.select({JOINT: ("viscous_friction", "coulomb_friction")}))
+    assert special_case(candidate, posed.index("viscous_friction", JOINT)) == ()
+    candidate = posed.candidate(posed.select({JOINT: ("joint_spring", "torque_offset")}))
+    assert special_case(candidate, posed.index("joint_spring", JOINT)) == ()

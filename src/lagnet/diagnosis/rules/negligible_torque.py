@@ -49,9 +49,13 @@ class NegligibleTorque(RejectionRule):
         return tuple(self._rejection(candidate, n, sizes[n], undetermined[n]) for n in silent or small[:1])
 
     def _rejection(self, candidate: Candidate, n: int, size: float, undetermined: bool) -> Rejection:
-        detail = f"the power of its torque is {size:.3g} times the least that is claimed"
-        detail = "its 95 % interval holds the value at which it would be absent" if undetermined else detail
-        return self.rejection(candidate, candidate.indices[n], size, 1.0, detail)
+        index, detail = candidate.indices[n], f"the power of its torque is {size:.3g} times the least that is claimed"
+        if not undetermined:
+            return self.rejection(candidate, index, size, 1.0, detail)
+        instead = special_case(candidate, index)
+        detail = "its 95 % interval holds the value at which it would be absent"
+        detail += "".join(f"; {candidate.library.hypotheses[i].effect} takes its place" for i in instead)
+        return self.rejection(candidate, index, size, 1.0, detail, instead)
 
     @staticmethod
     def sizes(problem: Problem, effects: Sequence[NamedEffect], left: np.ndarray | float = np.inf) -> list[float]:
@@ -70,6 +74,20 @@ class NegligibleTorque(RejectionRule):
             least = problem.limits.least_power_of(effect_named(effect.effect), problem.scale**2, nominal, left)
             out.append(float(np.max(_mean_square(parts) / least)))
         return out
+
+
+def special_case(candidate: Candidate, index: int) -> tuple[int, ...]:
+    """The hypothesis that a selected one contains and that nothing else selected excludes; none in most cases.
+
+    A spring whose rest position is far away is an offset, and has a stiffness that may be zero.
+    """
+    library, chosen = candidate.library, candidate.library.hypotheses[index]
+    if chosen.joint is None:
+        return ()
+    others = {*candidate.selection.local[chosen.joint]} - {index}
+    barred = library.incompatible_at(chosen.joint)
+    simple = (i for i in library.local[chosen.joint] if library.hypotheses[i].effect in chosen.law.contains)
+    return tuple(i for i in simple if not any((i, k) in barred for k in others))[:1]
 
 
 def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> np.ndarray:

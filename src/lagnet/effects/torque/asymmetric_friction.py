@@ -23,6 +23,7 @@ class AsymmetricFriction(LinearEffect):
     shown_by = "motion in both directions"
     confused_with = ("coulomb_friction", "torque_offset")
     contains = ("coulomb_friction",)
+    sum_of = ("coulomb_friction", "torque_offset")
     absent = (("Fc_plus", 0.0), ("Fc_minus", 0.0))
     is_friction = True
     is_dry_friction = True
