@@ -78,7 +78,7 @@ def as_on_real_joints(plant, arm, at):
         return (4.0 + 1.6 * np.exp(-((v / 0.1) ** 2))) * np.tanh(v / SHARP) + 1.6 * v - 0.4
 
     real = plant(at(1, torque))
-    return pose(arm, real.record(47), real.record(48))
+    return pose(arm, real.record(61), real.record(62))
 
 
 def test_stribeck_friction_beside_an_offset_is_no_drag(as_on_real_joints) -> None:
