@@ -12,7 +12,7 @@ from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.problem.intervals import EventInterval, fills, set_aside
 from lagnet.diagnosis.problem.problem import OVERSAMPLING, Problem
 from lagnet.diagnosis.problem.residuals import residual_by_recording
-from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.detection import SHORTEST, Scan
 from lagnet.diagnosis.transients.fitting import BEYOND, EventFit, fit_event
 from lagnet.diagnosis.transients.holdout_continuation import carry_on
 from lagnet.diagnosis.transients.transient import Transient
@@ -103,9 +103,12 @@ def _convinces(fit: EventFit) -> bool:
 
 
 def is_resolved(effect: NamedEffect, bandwidth: float) -> bool:
-    """Whether an event is longer than a period of the low-pass: a shorter one may be an outlier as well as a push."""
+    """Whether an event is longer than a period of the low-pass, and than a burst of disturbance may be.
+
+    A shorter one may be an outlier as well as a push. Edges that were fitted may have moved closer than those found.
+    """
     start, end = effect.interval or (-np.inf, np.inf)
-    return end - start >= RESOLVED / bandwidth
+    return end - start >= max(RESOLVED / bandwidth, SHORTEST)
 
 
 def _local(fit: EventFit) -> bool:
