@@ -30,6 +30,8 @@ class NegligibleTorque(RejectionRule):
     cause that makes the nominal model almost all wrong, a share of that error is much: an effect that explains more
     than all that is left there is none to be passed over. That holds of laws whose torque is like no load's; a share
     of the load, or a body, may stand for a part of the large cause, and `left` does not count for it.
+
+    A law whose interval holds its absence gives its place to its special case: a spring to an offset.
     """
 
     name: ClassVar[str] = "negligible_torque"
