@@ -13,8 +13,8 @@ import numpy as np
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import Robot
+from validation.far_models.motion import harmonics
 
-RATE, SECONDS, HARMONICS = 100.0, 30.0, 5
 ENCODER, NOISE = 1e-5, 0.01  # [rad]; of each joint's usual torque
 SHARP = 1e-4  # [rad/s] over which dry friction changes its direction
 KINDS = {"missing": (0.02, 1.0), "half": (0.5, 1.0), "double": (2.0, 1.0), "mixed": (0.02, 0.5, 1.0, 2.0), "rough": ()}
@@ -42,13 +42,8 @@ class FarPlant:
 
     def record(self, seed: int) -> Recording:
         """One motion with what an encoder and a torque sensor write down of it."""
-        rng, n = np.random.default_rng(seed), self.true.n_dof
-        time = np.arange(round(SECONDS * RATE)) / RATE
-        omega = 2.0 * np.pi * 0.1 * np.arange(1, HARMONICS + 1)[:, None]
-        size = rng.normal(0.0, 0.35, (HARMONICS, n)) / np.sqrt(np.arange(1, HARMONICS + 1))[:, None]
-        angle = omega * time[:, None, None] + rng.uniform(0.0, 2.0 * np.pi, (HARMONICS, n))
-        q = rng.uniform(-0.8, 0.8, n) + (size * np.sin(angle)).sum(axis=1)
-        v, a = (size * omega * np.cos(angle)).sum(axis=1), -(size * omega**2 * np.sin(angle)).sum(axis=1)
+        rng = np.random.default_rng(seed)
+        time, q, v, a = harmonics(rng, self.true.n_dof)
         up = np.clip(v / SHARP, 0.0, 1.0) * self.dry[0] - np.clip(-v / SHARP, 0.0, 1.0) * self.dry[1]
         tau = self.true.inverse_dynamics(q, v, a) + up + self.viscous * v + self.rotor * a
         tau = tau + NOISE * np.std(tau, axis=0) * rng.standard_normal(tau.shape)

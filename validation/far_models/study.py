@@ -6,7 +6,6 @@ python -m validation.far_models.study [--plants 60] [--first 0] [--quick] [--out
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
@@ -15,12 +14,15 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.rigid_body.robot import Robot
+from validation.far_models.plant_by_plant import run
 from validation.far_models.plants import FarPlant, draw
 from validation.real_arms.least_squares import LeastSquares
 
 HERE = Path(__file__).resolve().parent
-FULL, QUICK = 60, 1
+FULL = 60
 LAYERS = ("nominal", "named", "identified", "full")
+TOLD = ("kind", "friction", "worse", "wrong_names", "seconds")  # of each plant, as it is done
 WORSE = 1.1  # times the error of least squares
 FLOOR = 1e-4  # of a joint's variance, the power of the noise that was put in: below it, nothing is worse
 TRUE = {
@@ -36,7 +38,7 @@ def study(plant: FarPlant) -> dict[str, Any]:
     seconds = time.process_time() - begun
     with threadpool_limits(1):
         begun = time.process_time()
-        squares = least_squares_error(plant, result)
+        squares = least_squares_error(plant.nominal, result)
         of_squares = time.process_time() - begun
     layers = {k: [getattr(f, f"nmse_{k}") for f in result.verdict.fit] for k in LAYERS}
     worse = np.array(layers["identified"]) > np.maximum(WORSE * squares, FLOOR)
@@ -55,10 +57,10 @@ def study(plant: FarPlant) -> dict[str, Any]:
     }
 
 
-def least_squares_error(plant: FarPlant, result: Diagnosis) -> np.ndarray:
+def least_squares_error(nominal: Robot, result: Diagnosis) -> np.ndarray:
     """nMSE (dof,) of plain least squares on the held-out samples."""
     problem = result.state.problem
-    fit = LeastSquares(plant.nominal, problem)
+    fit = LeastSquares(nominal, problem)
     residual = np.concatenate([problem.reduce(p, p.tau - fit.torque(p)) for p in problem.holdout])
     return np.mean(residual**2, axis=0) / problem.unseen_variance
 
@@ -84,21 +86,8 @@ def summary(plants: list[dict[str, Any]]) -> dict[str, Any]:
 def main() -> int:
     """Run the plants and write the result."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--plants", type=int, default=FULL)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--out", type=Path)
-    given = parser.parse_args()
-    plants: list[dict[str, Any]] = []
-    out = given.out or (None if given.quick else HERE / "result.json")
-    for seed in range(given.first, given.first + (QUICK if given.quick else given.plants)):
-        plants.append({"plant": seed, **study(draw(seed))})
-        print({k: plants[-1][k] for k in ("plant", "kind", "friction", "worse", "wrong_names", "seconds")}, flush=True)
-        if out:  # after each, so that a run that is cut keeps what it has
-            text = json.dumps({"summary": summary(plants), "plants": plants}, indent=1)
-            out.write_text(text + "\n", encoding="utf-8")
-    figures = summary(plants)
-    print(json.dumps(figures, indent=1))
+    parser.add_argument("--quick", action="store_true", help="one plant; writes nothing")
+    figures = run(parser, lambda number: study(draw(number)), summary, TOLD, FULL, HERE)
     return int(figures["joints_worse_than_least_squares"] > 0)
 
 

@@ -15,8 +15,8 @@ from scipy.signal import lfilter
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.rigid_body.robot import Robot
+from validation.far_models.motion import harmonics
 
-RATE, SECONDS, HARMONICS = 100.0, 30.0, 5
 ENCODER, NOISE = 1e-5, 0.01  # [rad] or [m]; of each joint's usual torque
 SHARP, STRIBECK = 1e-4, 0.1  # [rad/s] over which dry friction changes its direction, and by which its excess falls off
 WAVES, RIPPLE = 17.0, 0.05  # of a ripple a radian, and its size over dry friction
@@ -46,13 +46,8 @@ class WholeJoints:
 
     def record(self, seed: int) -> Recording:
         """One motion with what an encoder and a torque sensor write down of it."""
-        rng, n = np.random.default_rng(seed), self.true.n_dof
-        time = np.arange(round(SECONDS * RATE)) / RATE
-        omega = 2.0 * np.pi * 0.1 * np.arange(1, HARMONICS + 1)[:, None]
-        size = rng.normal(0.0, 0.35, (HARMONICS, n)) / np.sqrt(np.arange(1, HARMONICS + 1))[:, None]
-        angle = omega * time[:, None, None] + rng.uniform(0.0, 2.0 * np.pi, (HARMONICS, n))
-        q = rng.uniform(-0.8, 0.8, n) + (size * np.sin(angle)).sum(axis=1)
-        v, a = (size * omega * np.cos(angle)).sum(axis=1), -(size * omega**2 * np.sin(angle)).sum(axis=1)
+        rng = np.random.default_rng(seed)
+        time, q, v, a = harmonics(rng, self.true.n_dof)
         tau = self.true.inverse_dynamics(q, v, a) + self._beside_bodies(q, v, a)
         usual = np.std(tau, axis=0)
         tau = tau + usual * (NOISE * rng.standard_normal(tau.shape) + SLOW * _slow(rng.standard_normal(tau.shape)))
@@ -70,7 +65,7 @@ class WholeJoints:
 
 
 def _slow(steps: np.ndarray) -> np.ndarray:
-    return lfilter([1.0 - MEMORY], [1.0, -MEMORY], steps, axis=0)
+    return np.asarray(lfilter([1.0 - MEMORY], [1.0, -MEMORY], steps, axis=0))
 
 
 def draw(seed: int) -> WholeJoints:

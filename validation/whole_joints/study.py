@@ -6,7 +6,6 @@ python -m validation.whole_joints.study [--plants 24] [--first 0] [--quick] [--o
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
@@ -14,14 +13,16 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.verdict.verdict import EffectFound
-from validation.real_arms.least_squares import LeastSquares
+from validation.far_models.plant_by_plant import run
+from validation.far_models.study import least_squares_error
 from validation.whole_joints.plants import WholeJoints, draw
 
 HERE = Path(__file__).resolve().parent
-FULL, QUICK = 24, 1
+FULL = 24
 LAYERS = ("nominal", "named", "identified", "full")
+TOLD = ("joints", "worse", "wrong_names", "seconds")  # of each plant, as it is done
 WORSE = 1.1  # times the error of least squares
 FRICTION = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "viscous_friction"}
 TRUE = FRICTION | {"torque_offset", "rotor_inertia", "torque_ripple", "link_inertia", "payload"}  # at every joint
@@ -33,7 +34,7 @@ def study(plant: WholeJoints) -> dict[str, Any]:
     result = diagnose([plant.record(1), plant.record(2)], plant.nominal, [plant.record(3)])
     seconds = time.process_time() - begun
     with threadpool_limits(1):
-        squares = least_squares_error(plant, result)
+        squares = least_squares_error(plant.nominal, result)
     layers = {k: [getattr(f, f"nmse_{k}") for f in result.verdict.fit] for k in LAYERS}
     return {
         "joints": plant.nominal.n_dof,
@@ -51,14 +52,6 @@ def is_wrong(found: EffectFound, plant: WholeJoints) -> bool:
     """Whether neither a name nor what it is tied with is there; a spring stands for the strut at the second joint."""
     there = TRUE | ({"joint_spring"} if found.joint == plant.true.joints[1] else set())
     return not there & {found.effect, *found.tied_with}
-
-
-def least_squares_error(plant: WholeJoints, result: Diagnosis) -> np.ndarray:
-    """nMSE (dof,) of plain least squares on the held-out samples."""
-    problem = result.state.problem
-    fit = LeastSquares(plant.nominal, problem)
-    residual = np.concatenate([problem.reduce(p, p.tau - fit.torque(p)) for p in problem.holdout])
-    return np.mean(residual**2, axis=0) / problem.unseen_variance
 
 
 def summary(plants: list[dict[str, Any]]) -> dict[str, Any]:
@@ -80,21 +73,8 @@ def summary(plants: list[dict[str, Any]]) -> dict[str, Any]:
 def main() -> int:
     """Run the plants and write the result."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--plants", type=int, default=FULL)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--out", type=Path)
-    given = parser.parse_args()
-    plants: list[dict[str, Any]] = []
-    out = given.out or (None if given.quick else HERE / "result.json")
-    for seed in range(given.first, given.first + (QUICK if given.quick else given.plants)):
-        plants.append({"plant": seed, **study(draw(seed))})
-        print({k: plants[-1][k] for k in ("plant", "joints", "worse", "wrong_names", "seconds")}, flush=True)
-        if out:  # after each, so that a run that is cut keeps what it has
-            text = json.dumps({"summary": summary(plants), "plants": plants}, indent=1)
-            out.write_text(text + "\n", encoding="utf-8")
-    figures = summary(plants)
-    print(json.dumps(figures, indent=1))
+    parser.add_argument("--quick", action="store_true", help="one plant; writes nothing")
+    figures = run(parser, lambda number: study(draw(number)), summary, TOLD, FULL, HERE)
     return int(figures["joints_worse_than_least_squares"] > 0 or figures["wrong_names"] > 0)
 
 
