@@ -9,7 +9,8 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.diagnose import diagnose
-from lagnet.diagnosis.selection.iterated_search import _bears_its_columns
+from lagnet.diagnosis.regression.library import Hypothesis
+from lagnet.diagnosis.selection.iterated_search import _bears_its_columns, _carried_over
 from lagnet.models.corrected.named_effects import NamedEffect
 
 MASS = 1.5  # [kg]
@@ -100,3 +101,12 @@ def test_columns_of_a_body_that_is_not_selected_bear_no_selection(plant, arm) ->
     assert _bears_its_columns(problem, near)
     assert not _bears_its_columns(problem, ())
     assert _bears_its_columns(posed.problem, ())
+
+
+def test_a_link_told_by_its_mass_is_carried_over_with_all_ten(plant, arm) -> None:
+    """Masses are made after the search, of what it selected: the library of the next round has free links alone."""
+    posed = pose(arm, plant().record(61), plant().record(62))
+    mass = Hypothesis("link_inertia", 1, (("form", 1.0),))
+    wider = posed.library.with_more([mass], [1])
+    found = replace(posed.search(), arm_wide=(len(posed.library.hypotheses),))
+    assert _carried_over(wider, found, posed.library).arm_wide == (posed.index("link_inertia", 1),)

@@ -7,7 +7,7 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.selection.arm_search import views_of
-from lagnet.diagnosis.selection.joint_search import drop_immaterial, improve, in_parts, search_joint, simplify
+from lagnet.diagnosis.selection.joint_search import drop_immaterial, improve, simplify
 
 SHARP = 1e-3  # [rad/s]
 
@@ -68,30 +68,3 @@ def test_a_spring_far_from_its_rest_position_is_no_torque_offset(plant, arm, at)
     posed = pose(arm, real.record(45), real.record(46))
     view = views_of(posed.equations, posed.search())[2]
     assert simplify(view, (number(view, "joint_spring"),)) == (number(view, "joint_spring"),)
-
-
-@pytest.fixture(scope="module")
-def as_on_real_joints(plant, arm, at):
-    """Stribeck and viscous friction with an offset, as most real joints have them."""
-
-    def torque(q, v, a, t):
-        return (4.0 + 1.6 * np.exp(-((v / 0.1) ** 2))) * np.tanh(v / SHARP) + 1.6 * v - 0.4
-
-    real = plant(at(1, torque))
-    return pose(arm, real.record(61), real.record(62))
-
-
-def test_stribeck_friction_beside_an_offset_is_no_drag(as_on_real_joints) -> None:
-    """Unequal dry friction beside drag is the best that single exchanges reach: it holds the offset of the other."""
-    view = views_of(as_on_real_joints.equations, as_on_real_joints.search())[1]
-    chosen = {view.equations.library.hypotheses[i].effect for i in search_joint(view)}
-    assert chosen == {"stribeck_friction", "viscous_friction", "torque_offset"}
-
-
-def test_a_sum_is_taken_apart_where_its_terms_may_stand_beside_the_rest(as_on_real_joints) -> None:
-    view = views_of(as_on_real_joints.equations, as_on_real_joints.search())[1]
-    uneven, drag, spring = (number(view, n) for n in ("asymmetric_friction", "quadratic_drag", "joint_spring"))
-    parts = {number(view, "coulomb_friction"), number(view, "torque_offset")}
-    assert [set(s) for s in in_parts(view, (uneven, drag))] == [{drag, *parts}]
-    assert in_parts(view, (uneven, spring)) == []  # a spring holds an offset already
-    assert in_parts(view, (drag,)) == []

@@ -24,6 +24,7 @@ from lagnet.diagnosis.selection.gain_exchange import exchange_gains
 from lagnet.diagnosis.selection.link_exchange import exchange_links
 from lagnet.diagnosis.selection.named_effects import named_effects
 from lagnet.diagnosis.selection.residual_proposals import proposals_from_residual
+from lagnet.diagnosis.selection.sum_exchange import exchange_sums
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.gravity_tilt import is_bent
 from lagnet.models.corrected.named_effects import NamedEffect, load_before
@@ -77,15 +78,15 @@ def _search_among(
     equations = sum_normal_equations(library, collect_block_grams(problem, library, problem.fit), problem.limits)
     starts = (None,) if last is None or not last[1].arm_wide else (None, _carried_over(*last, library))
     found = search_arm(equations, equations.samples * noise**2, equations.samples * problem.scale**2, starts)
-    return equations, exchange_gains(equations, found)
+    return equations, exchange_gains(equations, exchange_sums(equations, found))
 
 
 def _carried_over(library: Library, found: Selection, to: Library) -> Selection:
-    """A selection in the indices of another library, without hypotheses that it lacks."""
+    """A selection in the indices of another library, without hypotheses that it lacks; links in their free form."""
     index = {(h.place, h.shape): i for i, h in enumerate(to.hypotheses)}
 
     def kept(chosen: tuple[int, ...]) -> tuple[int, ...]:
-        places = ((h.place, h.shape) for h in (library.hypotheses[i] for i in chosen))
+        places = ((h.place, () if h.law.changes_link else h.shape) for h in (library.hypotheses[i] for i in chosen))
         return tuple(index[p] for p in places if p in index)
 
     return replace(found, arm_wide=kept(found.arm_wide), local=tuple(kept(own) for own in found.local))

@@ -12,29 +12,10 @@ ROUNDS = 40
 
 
 def search_joint(view: JointView, warm: tuple[int, ...] = ()) -> tuple[int, ...]:
-    """The best selection found from an empty start, a rich one and a given one, and from the best of these in parts."""
+    """The best selection found from an empty start, a rich one and a given one."""
     starts = {(), rich_start(view), warm}
-    best = max((_improved(view, s) for s in sorted(starts)), key=view.score)
-    return max((best, *(_improved(view, s) for s in in_parts(view, best))), key=view.score)
-
-
-def _improved(view: JointView, start: tuple[int, ...]) -> tuple[int, ...]:
-    return view.remembered(("improved", start), lambda: improve(view, start))
-
-
-def in_parts(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Selections with the terms of a sum in its place.
-
-    A law that takes the place of one term and needs the other beside it is then one exchange away, and not two.
-    """
-    library, out = view.equations.library, []
-    for i in selection:
-        terms = library.hypotheses[i].law.sum_of
-        parts = [k for k in library.local[view.joint] if library.hypotheses[k].effect in terms]
-        rest = tuple(k for k in selection if k != i)
-        if parts and all(compatible(view, rest, k) for k in parts):
-            out.append(tuple(sorted({*rest, *parts})))
-    return out
+    found = [view.remembered(("improved", s), lambda s=s: improve(view, s)) for s in sorted(starts)]
+    return max(found, key=lambda s: view.score(s))
 
 
 def rich_start(view: JointView) -> tuple[int, ...]:
