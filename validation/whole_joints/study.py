@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.verdict.verdict import EffectFound
+from lagnet.errors import DiagnosisError
 from validation.far_models.plant_by_plant import run
 from validation.far_models.study import least_squares_error
 from validation.whole_joints.plants import WholeJoints, draw
@@ -23,6 +24,7 @@ HERE = Path(__file__).resolve().parent
 FULL = 24
 LAYERS = ("nominal", "named", "identified", "full")
 TOLD = ("joints", "worse", "wrong_names", "seconds")  # of each plant, as it is done
+REFUSED = {"worse": 0, "names": [], "wrong_names": [], "seconds": None}
 WORSE = 1.1  # times the error of least squares
 FRICTION = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "viscous_friction"}
 TRUE = FRICTION | {"torque_offset", "rotor_inertia", "torque_ripple", "link_inertia", "payload"}  # at every joint
@@ -31,12 +33,16 @@ TRUE = FRICTION | {"torque_offset", "rotor_inertia", "torque_ripple", "link_iner
 def study(plant: WholeJoints) -> dict[str, Any]:
     """Held-out nMSE by joint of every layer and of least squares on the same samples, names and times."""
     begun = time.process_time()
-    result = diagnose([plant.record(1), plant.record(2)], plant.nominal, [plant.record(3)])
+    try:
+        result = diagnose([plant.record(1), plant.record(2)], plant.nominal, [plant.record(3)])
+    except DiagnosisError as refusal:  # masses so far off look like another unit
+        return {**REFUSED, "joints": plant.nominal.n_dof, "refused": str(refusal)}
     seconds = time.process_time() - begun
     with threadpool_limits(1):
         squares = least_squares_error(plant.nominal, result)
     layers = {k: [getattr(f, f"nmse_{k}") for f in result.verdict.fit] for k in LAYERS}
     return {
+        "refused": None,
         "joints": plant.nominal.n_dof,
         "beside_free_links": result.state.judged is not None,
         **layers,
@@ -56,9 +62,11 @@ def is_wrong(found: EffectFound, plant: WholeJoints) -> bool:
 
 def summary(plants: list[dict[str, Any]]) -> dict[str, Any]:
     """The figures of the pass lines."""
+    refused, plants = sum(p["refused"] is not None for p in plants), [p for p in plants if p["refused"] is None]
     ratios = [i / s for p in plants for i, s in zip(p["identified"], p["least_squares"], strict=True)]
     return {
         "plants": len(plants),
+        "refused": refused,
         "joints": sum(p["joints"] for p in plants),
         "joints_worse_than_least_squares": sum(p["worse"] for p in plants),
         "names": sum(len(p["names"]) for p in plants),
