@@ -50,7 +50,7 @@ def nearest_body(gram: np.ndarray, wanted: np.ndarray, base: np.ndarray) -> np.n
         if np.all(is_physically_consistent(wanted)):
             return nearest
         bound = _lost(gram, nearest - wanted) + WITHIN
-        return next(body for body in bodies if _lost(gram, body - wanted) <= bound)
+        return next((body for body in bodies if _lost(gram, body - wanted) <= bound), nearest)
     except np.linalg.LinAlgError:
         return np.reshape([_cut_off(body) for body in wanted.reshape(-1, 10)], wanted.shape)
 

@@ -134,6 +134,17 @@ class Library:
         """Pairs of a joint's hypotheses that may not stand together: the same law twice, or beside its special case."""
         return self._incompatible[joint]
 
+    def may_stand_beside(self, index: int, others: Iterable[int]) -> bool:
+        """Whether a hypothesis of one joint may stand together with others of that joint."""
+        barred = self.incompatible_at(int(self.hypotheses[index].joint or 0))
+        return not any((i, index) in barred for i in others)
+
+    def terms_of(self, index: int) -> dict[str, int]:
+        """The effects that a hypothesis of one joint is the sum of, with their numbers; none where one is missing."""
+        own, terms = self.local[int(self.hypotheses[index].joint or 0)], self.hypotheses[index].law.sum_of
+        found = {self.hypotheses[k].effect: k for k in own if self.hypotheses[k].effect in terms}
+        return found if len(found) == len(terms) else {}
+
     @cached_property
     def _incompatible(self) -> tuple[set[tuple[int, int]], ...]:
         laws = {h.effect: {h.effect, *h.law.contains} for h in self.hypotheses}

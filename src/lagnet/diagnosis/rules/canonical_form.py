@@ -8,8 +8,6 @@ from typing import ClassVar, final
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 
-COULOMB, OFFSET, ASYMMETRIC = "coulomb_friction", "torque_offset", "asymmetric_friction"
-
 
 @final
 @dataclass(frozen=True)
@@ -22,21 +20,17 @@ class CanonicalForm(RejectionRule):
     after_refit: ClassVar[bool] = False
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
-        library = candidate.library
+        library, least = candidate.library, 1.0 + candidate.limits.least_share
         for joint, own in enumerate(candidate.selection.local):
-            plain = {library.hypotheses[i].effect: i for i in library.local[joint] if not library.hypotheses[i].shape}
-            pair = tuple(plain[n] for n in (COULOMB, OFFSET) if n in plain)
-            asymmetric = plain.get(ASYMMETRIC)
-            if asymmetric not in own or len(pair) < 2 or any(self._has_offset(candidate, i) for i in own):
-                continue
-            other = candidate.without(asymmetric, instead=pair).selection
-            ratio = other.fit.sse[joint] / max(candidate.selection.fit.sse[joint], 1e-300)
-            if ratio < 1.0 + candidate.limits.least_share:
-                detail = f"Coulomb friction and an offset leave {ratio:.3g} times its squared error and take its place"
-                return (self.rejection(candidate, asymmetric, ratio, 1.0 + candidate.limits.least_share, detail, pair),)
+            for index in own:
+                pair, rest = tuple(library.terms_of(index).values()), tuple(i for i in own if i != index)
+                if not pair or not all(library.may_stand_beside(k, rest) for k in pair):
+                    continue
+                other = candidate.without(index, instead=pair).selection
+                ratio = other.fit.sse[joint] / max(candidate.selection.fit.sse[joint], 1e-300)
+                if ratio < least:
+                    detail = (
+                        f"Coulomb friction and an offset leave {ratio:.3g} times its squared error and take its place"
+                    )
+                    return (self.rejection(candidate, index, ratio, least, detail, pair),)
         return ()
-
-    @staticmethod
-    def _has_offset(candidate: Candidate, index: int) -> bool:
-        law = candidate.library.hypotheses[index].law
-        return OFFSET in (law.name, *law.contains)

@@ -87,9 +87,8 @@ def special_case(candidate: Candidate, index: int) -> tuple[int, ...]:
     if chosen.joint is None:
         return ()
     others = {*candidate.selection.local[chosen.joint]} - {index}
-    barred = library.incompatible_at(chosen.joint)
     simple = (i for i in library.local[chosen.joint] if library.hypotheses[i].effect in chosen.law.contains)
-    return tuple(i for i in simple if not any((i, k) in barred for k in others))[:1]
+    return tuple(i for i in simple if library.may_stand_beside(i, others))[:1]
 
 
 def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> np.ndarray:

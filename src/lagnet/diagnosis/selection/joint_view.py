@@ -121,8 +121,7 @@ def view_joint(
 
 def compatible(view: JointView, selection: Sequence[int], index: int) -> bool:
     """Whether a hypothesis may stand beside the others: not twice the same, nor a law beside its special case."""
-    barred = view.equations.library.incompatible_at(view.joint)
-    return not any((i, index) in barred for i in selection)
+    return view.equations.library.may_stand_beside(index, selection)
 
 
 def joint_inefficiency(view: JointView, selection: Sequence[int]) -> float:

@@ -28,9 +28,8 @@ def exchange_sums(equations: NormalEquations, found: Selection) -> Selection:
 
 
 def _exchanged(view: JointView, own: tuple[int, ...]) -> tuple[int, ...]:
-    score = view.score(own)
     parts = max(in_parts(view, own), key=view.score, default=own)
-    if view.score(parts) <= score:
+    if view.score(parts) <= view.score(own):
         return own
     return max(own, improve(view, parts), key=view.score)
 
@@ -44,14 +43,12 @@ def in_parts(view: JointView, selection: tuple[int, ...]) -> list[tuple[int, ...
 
 
 def _parts_of(view: JointView, whole: int, rest: tuple[int, ...]) -> list[tuple[int, ...]]:
-    library, barred = view.equations.library, view.equations.library.incompatible_at(view.joint)
-    local, terms = library.local[view.joint], library.hypotheses[whole].law.sum_of
-    parts = {library.hypotheses[k].effect: k for k in local if library.hypotheses[k].effect in terms}
-    out = []
-    for k in local:
+    library = view.equations.library
+    terms, out = library.terms_of(whole), []
+    for k in library.local[view.joint]:
         law = library.hypotheses[k].law
-        others = tuple(p for name, p in parts.items() if name not in law.contains)
-        wider = law.name != library.hypotheses[whole].effect and (whole, k) in barred and len(others) < len(parts)
-        if wider and compatible(view, (*rest, *others), k) and all(compatible(view, rest, p) for p in others):
+        others = tuple(i for name, i in terms.items() if name not in law.contains)
+        wider = len(others) < len(terms) and not law.sum_of and not compatible(view, (whole,), k)
+        if wider and compatible(view, (*rest, *others), k) and all(compatible(view, rest, i) for i in others):
             out.append(tuple(sorted((*rest, *others, k))))
     return out

@@ -32,7 +32,7 @@ class MotionTerm:
         kind: key of `KINDS`.
         joint: index of the joint that feels it.
         scale: what the function is stretched by: a speed [rad/s], a distance [rad]; 1 where there is nothing.
-        other: index of the neighbouring joint that it ties to; None for a function of one joint.
+        other: index of the joint before that it ties to; None for a function of one joint.
         centre: position about which a wave is stretched [rad]; 0 for all else.
     """
 
