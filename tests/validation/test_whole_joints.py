@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from validation.whole_joints.plants import MASSES, NOISE, SLOW, draw
-from validation.whole_joints.study import is_wrong
+from validation.whole_joints.study import REFUSED, is_wrong, summary
 
 
 @pytest.fixture(scope="module")
@@ -54,3 +54,13 @@ def test_what_is_beside_the_bodies_is_the_friction_rotor_strut_and_disturbance(p
 def test_a_name_is_wrong_where_neither_it_nor_what_it_is_tied_with_is_there(plant, effect, joint, tied, wrong) -> None:
     name = None if joint is None else plant.true.joints[joint]
     assert is_wrong(SimpleNamespace(effect=effect, joint=name, tied_with=tied), plant) is wrong
+
+
+def test_a_plant_that_is_refused_is_counted_as_that_alone() -> None:
+    told = {
+        "joints": 2, "refused": None, "identified": [1.0, 3.0], "least_squares": [2.0, 2.0], "worse": 1, "names": ["a"],
+        "wrong_names": [], "beside_free_links": False, "seconds": 5.0,
+    }  # fmt: skip
+    figures = summary([told, {**REFUSED, "joints": 6, "refused": "another unit"}])
+    assert (figures["plants"], figures["refused"], figures["joints"]) == (1, 1, 2)
+    assert figures["largest_ratio_to_least_squares"] == 1.5

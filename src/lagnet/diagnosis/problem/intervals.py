@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from lagnet.diagnosis.problem.problem import Problem, Segment
 
 SMEAR = 1.5  # periods of the bandwidth by which the filter widens an interval
-MOST = 0.75  # of the valid samples that may be set aside
-ALL = 0.9  # of a recording: what acts for longer has nothing in it from which it stands out
+MOST = 0.75  # of the valid samples that may be set aside, and of a recording: what acts for longer is how it is
 
 
 @dataclass(frozen=True)
@@ -54,9 +53,9 @@ def too_much(problem: Problem, masked: Problem) -> bool:
 
 
 def fills(problem: Problem, event: EventInterval) -> bool:
-    """Whether an event covers its recording."""
+    """Whether an event covers so much of its recording that it does not stand out from the rest of it."""
     pieces = [p for p in (problem.holdout if event.held_out else problem.fit) if p.recording == event.recording]
-    return event.end - event.start > ALL * float(pieces[-1].time[-1] - pieces[0].time[0])
+    return event.end - event.start > MOST * float(pieces[-1].time[-1] - pieces[0].time[0])
 
 
 def lasting(problem: Problem, events: Sequence[EventInterval]) -> Problem:

@@ -13,7 +13,7 @@ from itertools import combinations
 
 import numpy as np
 
-from lagnet.diagnosis.problem.intervals import MOST, EventInterval
+from lagnet.diagnosis.problem.intervals import EventInterval, fills
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
@@ -51,13 +51,7 @@ def differing_recordings(problem: Problem, scan: Scan, effects: Sequence[NamedEf
         scan: events beside the effects that were found on all recordings together.
         effects: these; friction and whatever else acts on the motion of a joint is there beside the loads.
     """
-    whole = [
-        one
-        for e in scan.events
-        if not e.held_out
-        for one in [_whole(problem, e.recording, e.gain)]
-        if e.end - e.start > MOST * (one.end - one.start)
-    ]
+    whole = [_whole(problem, e.recording, e.gain) for e in scan.events if not e.held_out and fills(problem, e)]
     found, of_all = _with_own_loads(problem, whole, scan, effects)
     alike = any(are_alike(one, other) for one, other in combinations(found, 2))
     return None if alike or len(found) < len(whole) else of_all

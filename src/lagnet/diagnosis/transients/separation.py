@@ -46,13 +46,7 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
         sigma: shape (dof,), what they leave at each joint [N m].
         scan: the intervals.
     """
-    found_in = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
-    lasting = [s for s, f in found_in if _convinces(f) and not _stands_beside(problem, persistent, sigma, s, scan)]
-    pairs = [(s, f) for s, f in found_in if not any(s is t for t in lasting)]
-    good = [(s, f) for s, f in pairs if _convinces(f)]
-    explained = (*lasting, *_bursts(pairs), *(s for s, _ in good))
-    others = (s for s in scan.events if not any(s is t for t in explained))
-    unnamed = tuple(s for s in others if s.held_out or s.gain > UNNAMED)
+    good, unnamed = _good_and_unnamed(problem, persistent, sigma, scan)
     together = refit(set_aside(problem, unnamed), (*persistent, *(f.effect for _, f in good)), sigma)
     n = len(persistent)
     found = []
@@ -67,6 +61,19 @@ def separate(problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndar
     shares = _shares(problem, of_persistent.effects, [p.effect for p in found])
     shared = [replace(p, share=s) for p, s in zip(found, shares, strict=True)]
     return Separated(of_persistent, *carry_on(problem, shared, unnamed))
+
+
+def _good_and_unnamed(
+    problem: Problem, persistent: Sequence[NamedEffect], sigma: np.ndarray, scan: Scan
+) -> tuple[list[tuple[EventInterval, EventFit]], tuple[EventInterval, ...]]:
+    """Intervals that a law explains, with its fit; and those that neither a law nor what lasts explains."""
+    pairs = [(s, fit_event(problem, persistent, s, scan)) for s in scan.events if not s.held_out]
+    good = [(s, f) for s, f in pairs if _convinces(f)]
+    lasting = [s for s, _ in good if not _stands_beside(problem, persistent, sigma, s, scan)]
+    good = [(s, f) for s, f in good if not any(s is t for t in lasting)]
+    explained = (*lasting, *_bursts(pairs), *(s for s, _ in good))
+    others = (s for s in scan.events if not any(s is t for t in explained))
+    return good, tuple(s for s in others if s.held_out or s.gain > UNNAMED)
 
 
 def within_recording(problem: Problem, effect: NamedEffect, intervals: Intervals) -> tuple[NamedEffect, Intervals]:
