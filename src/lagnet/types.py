@@ -122,6 +122,19 @@ def inertial_parameters_of(model: Any) -> np.ndarray:
     return np.array(found() if callable(found) else found, dtype=float)
 
 
+def has_mass(model: object) -> bool:
+    """Whether any link of a model has mass; True for a model that does not say, as one without links."""
+    return bool(getattr(model, "has_mass", True))
+
+
+def knows_masses(model: object) -> bool:
+    """Whether the masses of a model's links can be no placeholders, which say nothing of the unit of torque.
+
+    True for a model that does not say.
+    """
+    return bool(getattr(model, "knows_masses", True))
+
+
 def joint_types_of(model: object, n_dof: int) -> tuple[str, ...]:
     """'revolute', 'continuous' or 'prismatic' of each joint; revolute for a model that does not say."""
     return tuple(getattr(model, "joint_types", ("revolute",) * n_dof))

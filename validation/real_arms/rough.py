@@ -23,6 +23,7 @@ HERE = Path(__file__).resolve().parent
 SETS = ("staubli_tx40", "ur10e", "panda", "ur10", "loaded_1")
 SPREAD = 0.5  # standard deviation of the logarithm of each link's mass
 MOVED = 0.03  # [m] standard deviation of each coordinate of each link's centre of mass
+KILOGRAM, SMALL = 1.0, 1e-3  # [kg] and [kg m²] about each axis: what templates of robot files give every link
 ABSENT = 0.01  # of its inertial parameters, what is left of a link that a model leaves out
 
 
@@ -43,7 +44,23 @@ def without_wrist(robot: RobotModel, _: np.random.Generator) -> np.ndarray:
     return parameters
 
 
-KINDS = {"halved": halved, "scattered": scattered, "without wrist": without_wrist}
+def kilograms(robot: RobotModel, _: np.random.Generator) -> np.ndarray:
+    """A kilogram at the origin of each joint."""
+    return np.tile([KILOGRAM, 0, 0, 0, SMALL, 0, SMALL, 0, 0, SMALL], (robot.n_dof, 1))
+
+
+def kinematics_alone(robot: RobotModel, _: np.random.Generator) -> np.ndarray:
+    """No link has mass, as in files without inertials."""
+    return np.zeros((robot.n_dof, 10))
+
+
+KINDS = {
+    "halved": halved,
+    "scattered": scattered,
+    "without wrist": without_wrist,
+    "kilograms": kilograms,
+    "kinematics alone": kinematics_alone,
+}
 
 
 def rough_cases(data: Path) -> dict[str, Callable[[], Case]]:

@@ -49,6 +49,7 @@ def command(
     not_negative(seed, "--seed")
     check_free(out)
     model = load_description(robot, held_joints(hold))
+    model.require_mass()
     injected = read_effects(effects, model) if effects is not None else ()
     settings = SimulationSettings(
         trajectories=trajectories,

@@ -43,7 +43,7 @@ from lagnet.diagnosis.transients.separation import separate
 from lagnet.effects.catalogue import effect_named
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
-from lagnet.types import is_robot_model
+from lagnet.types import has_mass, is_robot_model
 
 PUZZLING = 0.3  # of a joint's mismatch: if so much is unexplained, narrower bands are tried
 MUCH = 0.05  # of a joint's mismatch: if names leave so much, links that differ may explain it
@@ -73,14 +73,19 @@ def beside_links(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]
 
 
 def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]) -> DiagnosisState | None:
-    """A run beside all links that recordings share; None where it explains no more than the first."""
-    puzzled = is_puzzled(first)
-    if first.problem.given is not None or not (is_identified(first) if puzzled else is_outdone(first)):
+    """A run beside all links that recordings share; None where it explains no more than the first.
+
+    Where no link of the model has mass, one of which a change has a name stands for others, however well it explains.
+    """
+    puzzled, unknown = is_puzzled(first), not has_mass(first.problem.nominal)
+    if first.problem.given is not None or not (unknown or (is_identified(first) if puzzled else is_outdone(first))):
         return None
     free = beside_free_bodies(first.problem, first.noise, first.identified_alone)
     if free is None:
         return None
     second = settle_transients(run(free), run)
+    if unknown:
+        return second
     if puzzled:
         return None if is_puzzled(against_given(second)) else second
     before, after = (log_error(one.after, one.noise) for one in (first, second))

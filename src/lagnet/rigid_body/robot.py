@@ -9,12 +9,15 @@ from typing import Any, final
 
 import numpy as np
 
+from lagnet.errors import RobotError
 from lagnet.rigid_body import batches, pinocchio_models
 from lagnet.rigid_body.body_tree import TreeBody, tree_of
 from lagnet.rigid_body.descriptions.description import NONE_HELD, Description
+from lagnet.rigid_body.descriptions.mass_checks import require_mass
 from lagnet.rigid_body.descriptions.reading import read_description
 from lagnet.rigid_body.descriptions.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.inertia import parameters_of_body
+from lagnet.rigid_body.placeholders import are_placeholders
 from lagnet.rigid_body.untyped_pinocchio import Model, pin
 from lagnet.types import JointVector, MassMatrix, Samples, Trajectory
 
@@ -48,6 +51,8 @@ class Robot:
         position_lower, position_upper, velocity_limit, effort_limit: shape (dof,), inf where unlimited.
         armature: shape (dof,), inertia of the motors felt at the joints [kg m²]; MJCF alone can declare it.
         gravity: shape (3,), in the frame of the base [m/s²].
+        has_mass: False where no link has mass: kinematics alone.
+        knows_masses: False there, and where all links but one at most have one mass, which may be a placeholder.
         kind: 'urdf', 'mjcf' or 'named_robot'.
         source: the name or path that was asked for; sha256: checksum of the file behind it.
         link_inertials: (link name, ten parameters in the link's frame) as a URDF gives them, before merging.
@@ -67,6 +72,8 @@ class Robot:
         self.effort_limit = pinocchio_models.limit(model.upperEffortLimit)
         self.armature = pinocchio_models.frozen(model.armature)
         self.gravity = pinocchio_models.frozen(model.gravity.linear)
+        masses = pinocchio_models.inertial_parameters(model)[:, 0]
+        self.has_mass, self.knows_masses = bool(masses.any()), not are_placeholders(masses)
         self.kind, self.source, self.sha256 = description.kind, description.source, description.file.sha256
         self.link_inertials, self.warnings = description.link_inertials, description.warnings
 
@@ -86,8 +93,32 @@ class Robot:
         return batches.inverse_dynamics(self._model, *self._batch(q=q, v=v, a=a))
 
     def forward_dynamics(self, q: Trajectory, v: Trajectory, tau: Trajectory) -> Trajectory:
-        """Acceleration [rad/s²] that torque tau gives at (q, v), shape (n, dof)."""
-        return batches.forward_dynamics(self._model, *self._batch(q=q, v=v, tau=tau))
+        """Acceleration [rad/s²] that torque tau gives at (q, v), shape (n, dof).
+
+        Raises:
+            RobotError: a joint with nothing that has mass behind it.
+        """
+        found = batches.forward_dynamics(self._model, *self._batch(q=q, v=v, tau=tau))
+        if not np.isfinite(found).all():
+            self.require_mass()
+        return found
+
+    @property
+    def can_move(self) -> bool:
+        """Whether something behind every joint has mass, so that torque moves it."""
+        try:
+            self.require_mass()
+        except RobotError:
+            return False
+        return True
+
+    def require_mass(self) -> None:
+        """Nothing for an arm that torque can move.
+
+        Raises:
+            RobotError: a joint with nothing that has mass behind it, as in a file of kinematics alone.
+        """
+        require_mass(self._model, self.source)
 
     def mass_matrix(self, q: Trajectory) -> MassMatrix:
         """Joint-space inertia M(q), shape (n, dof, dof)."""

@@ -58,11 +58,12 @@ class PyBulletArm:
 
     Raises:
         MissingExtraError: PyBullet is not installed.
-        RobotError: the arm cannot be written as a URDF.
+        RobotError: the arm cannot be written as a URDF, or has a joint with nothing that has mass behind it.
     """
 
     def __init__(self, robot: Robot, step: float):
         self._engine = load_pybullet()
+        robot.require_mass()
         self.step = step
         self._world = self._engine.connect(self._engine.DIRECT)
         try:

@@ -33,8 +33,8 @@ class BeforeAfter:
     """Replays of the same recordings.
 
     Args:
-        before: the nominal model.
-        after: the corrected one; None where only a nominal model was given.
+        before: the nominal model; the corrected one where links without mass cannot be simulated.
+        after: the corrected one; None where only one model can be replayed.
         units: of each joint's position: rad or m.
     """
 
@@ -102,9 +102,10 @@ def before_and_after(
     if isinstance(model, ServoDrivenModel):
         return _servos_before_and_after(model, recordings, settings)
     nominal = bare_robot(model) if nominal is None else nominal
-    before = replay(nominal, recordings, settings)
-    units = units_of(bare_robot(model))
-    return BeforeAfter(before, None if model is nominal else replay(model, recordings, settings), units)
+    units, after = units_of(bare_robot(model)), None if model is nominal else replay(model, recordings, settings)
+    if after is not None and not bare_robot(nominal).can_move:
+        return BeforeAfter(after, None, units)
+    return BeforeAfter(replay(nominal, recordings, settings), after, units)
 
 
 def _servos_before_and_after(

@@ -144,7 +144,7 @@ def replay(model: Robot | CorrectedModel, recordings: list[Recording], settings:
         what = "the model has no servos whose gains others could be relative to"
         raise LagnetError(what, where="--gains", next_step="give a folder of a diagnosis on motion, or --kp and --kd")
     with started(model, settings) as (arm, engine):
-        return _replayed(arm, bare_robot(model), recordings, settings, settings.engine, _starter(engine))
+        return _replayed(arm, _driven_robot(model, arm), recordings, settings, settings.engine, _starter(engine))
 
 
 def checked_engine(settings: ReplaySettings) -> None:
@@ -172,19 +172,26 @@ def started(model: Robot | CorrectedModel, settings: ReplaySettings) -> Iterator
 
 def replay_reference(model: Robot | CorrectedModel, recordings: list[Recording], settings: ReplaySettings) -> Replay:
     """The same replay by the corrected model's own forward motion, without free rollouts."""
-    arm, nominal = arm_physics(model), bare_robot(model)
+    arm = arm_physics(model)
     step = 1.0 / settings.rate
 
     def mover(q: JointVector, v: JointVector) -> DrivenArm:
         return DrivenArm(arm, step, q, v)
 
     settings = replace(settings, starts=0)
+    nominal = _driven_robot(model, arm)
     return _replayed(arm, nominal, recordings, settings, "forward dynamics of the corrected model", mover)
 
 
 def bare_robot(model: Any) -> Robot:
-    """The robot under all corrections, whose inertia the feedback is scaled with."""
+    """The robot under all corrections."""
     return bare_robot(model.nominal) if isinstance(model, CorrectedModel) else model
+
+
+def _driven_robot(model: Any, arm: ArmPhysics) -> Robot:
+    """Whose inertia scales the feedback: the robot under all corrections, or the corrected one where that has none."""
+    bare = bare_robot(model)
+    return bare if bare.can_move else arm.robot
 
 
 def _starter(engine: Engine) -> Mover:

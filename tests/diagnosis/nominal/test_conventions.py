@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from validation.whole_joints.plants import draw
 
 from lagnet.cli.main import main
 from lagnet.diagnosis.diagnose import diagnose
@@ -95,6 +97,30 @@ def test_a_load_that_turns_the_torque_of_the_last_joint_round_is_no_convention(p
         moment = times * body[1:4]
         loaded = arm.with_payload(1.0, moment, 1e-3 * np.eye(3))
         refuse_other_conventions(pose_problem(arm, *(condition([plant(robot=loaded).record(s)], 8.0) for s in (1, 2))))
+
+
+def of_one_mass(arm, mass):
+    """Links of one mass at the origins of their joints."""
+    links = mass * np.tile([1.0, 0, 0, 0, 1e-3, 0, 1e-3, 0, 0, 1e-3], (arm.n_dof, 1))
+    return arm.with_inertial_parameters(links)
+
+
+@pytest.mark.parametrize("knows", [True, False])
+def test_links_of_one_mass_that_is_far_too_little_are_no_other_unit(knows, monkeypatch) -> None:
+    rough = draw(3)
+    assert not rough.nominal.knows_masses
+    monkeypatch.setattr("lagnet.diagnosis.nominal.conventions.knows_masses", lambda _: knows)
+    posed = pose_problem(rough.nominal, *(condition([rough.record(seed)], None) for seed in (1, 2)))
+    with pytest.raises(DiagnosisError, match="far from the model's by a factor") if knows else nullcontext():
+        refuse_other_conventions(posed)
+
+
+def test_another_unit_of_an_arm_whose_links_do_have_one_mass_is_told(plant, arm) -> None:
+    equal = of_one_mass(arm, 2.0)
+    recordings = [plant(robot=equal).record(seed) for seed in (1, 2)]
+    recordings = [replace(r, tau=100.0 * r.tau) for r in recordings]
+    with pytest.raises(DiagnosisError, match="far from the model's by a factor: 100 at joint_0"):
+        refuse_other_conventions(pose_problem(equal, *(condition([r], 8.0) for r in recordings)))
 
 
 def test_physics_is_no_convention(plant, arm, at) -> None:

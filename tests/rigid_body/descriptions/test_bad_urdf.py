@@ -87,8 +87,6 @@ BAD = {
     "origin is nan": (arm().replace("<parent", '<origin rpy="0 0 nan"/><parent'), "not finite"),
     "limit is text": (arm().replace('lower="-1"', 'lower="low"'), "joint j1: limit lower='low'"),
     "limits swapped": (arm().replace('lower="-1"', 'lower="2"'), "lower limit above"),
-    "massless": (f'<robot><link name="a"/><link name="b"/>{turn("j1", "a", "b")}</robot>', "nothing behind joint j1"),
-    "zero mass": (arm(link=LINK.format("b").replace('"1"', '"0"')), "nothing behind joint j1 has mass"),
     "damping is text": (arm().replace("</joint>", '<dynamics damping="much"/></joint>'), "joint j1: dynamics damping"),
     "mimic is text": (arm().replace("</joint>", '<mimic joint="x" offset="far"/></joint>'), "joint j1: mimic offset"),
 }  # fmt: skip

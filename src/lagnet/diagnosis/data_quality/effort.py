@@ -16,10 +16,11 @@ from lagnet.diagnosis.data_quality.check import BETTER, Evidence
 from lagnet.diagnosis.data_quality.misfit import geometric_mean
 from lagnet.diagnosis.data_quality.physics import misfits_with_mounting_and_body
 from lagnet.diagnosis.effort_column.decide import effort_column
-from lagnet.diagnosis.effort_column.finding import EffortFinding
+from lagnet.diagnosis.effort_column.finding import UNIT_IN_NEWTON_METRES, EffortFinding
 from lagnet.errors import LagnetError
 from lagnet.recordings.quality.finding import Finding
 from lagnet.recordings.recording import Recording
+from lagnet.types import knows_masses
 
 RECORDINGS, LONGEST = 4, 20_000  # that are looked at, and samples of each
 MOST = 1500  # samples that are compared
@@ -43,7 +44,7 @@ def effort_findings(recordings: Sequence[Recording], robot: Any, evidence: Evide
         found = effort_column([r.rows(slice(0, LONGEST)) for r in _few(recordings)], robot, most=MOST)
     except (LagnetError, np.linalg.LinAlgError):
         return ()
-    if not _beyond_a_wrong_model(found):
+    if not _beyond_a_wrong_model(found) or (_is_told_by_size(found) and not knows_masses(robot)):
         return ()
     if found.kind not in COPIES:
         otherwise = float(geometric_mean(misfits_with_mounting_and_body(evidence)))
@@ -56,6 +57,11 @@ def effort_findings(recordings: Sequence[Recording], robot: Any, evidence: Evide
 def _few(recordings: Sequence[Recording]) -> Sequence[Recording]:
     every = max(1, len(recordings) // RECORDINGS)
     return recordings[::every][:RECORDINGS]
+
+
+def _is_told_by_size(found: EffortFinding) -> bool:
+    """Whether the size of the model's torque tells it: no placeholder's does."""
+    return found.kind in OF_SIZE or found.unit in UNIT_IN_NEWTON_METRES
 
 
 def _beyond_a_wrong_model(found: EffortFinding) -> bool:

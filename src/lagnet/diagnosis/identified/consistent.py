@@ -22,6 +22,7 @@ from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_b
 NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: that which predicts held-out blocks best
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
 RADIUS = 0.1  # [m] of the ball that replaces such a link
+FAR = 3.0  # times the modelled links, all together: lighter or heavier ones are drawn towards links of the found size
 WORSE = 1.5  # largest squared error of a joint over that of unconstrained parameters: beyond, bodies are not the cause
 
 
@@ -79,9 +80,21 @@ def _constrained(
         schur = (gram[bodies, bodies] - gram[bodies, others] @ refitted[:, :-1]) * scale[:, None] * scale
         reduced = (moment[bodies] - gram[bodies, others] @ refitted[:, -1]) * scale
         schur = 0.5 * (schur + schur.T)
-        for found in consistent_path(schur, reduced + schur @ modelled.ravel(), rounded(modelled), NATS):
+        moment_of_links = reduced + schur @ modelled.ravel()
+        prior = towards_found_size(schur, moment_of_links, rounded(modelled))
+        for found in consistent_path(schur, moment_of_links, prior, NATS):
             change = (found - modelled).ravel() * scale
             yield np.concatenate([change, refitted[:, -1] - refitted[:, :-1] @ change]), found - modelled
+
+
+def towards_found_size(gram: np.ndarray, moment: np.ndarray, prior: np.ndarray) -> np.ndarray:
+    """s π₀ with s = argmin ½ s² π₀ᵀ G π₀ - s mᵀ π₀ where that is below a third or above three; else π₀.
+
+    Models of unknown masses hold a kilogram, a gram or nothing in the place of each.
+    """
+    links = prior.ravel()
+    size = float(moment @ links) / max(float(links @ gram @ links), 1e-300)
+    return prior if size <= 0.0 or 1.0 / FAR <= size <= FAR else size * prior
 
 
 def rounded(modelled: np.ndarray) -> np.ndarray:

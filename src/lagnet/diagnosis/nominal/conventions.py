@@ -20,13 +20,14 @@ from lagnet.effects.inertia.gravity_tilt import GravityTilt
 from lagnet.effects.motion import Motion
 from lagnet.effects.own_terms import beside_own_terms
 from lagnet.errors import DiagnosisError
-from lagnet.types import has_regressor, joint_types_of
+from lagnet.types import has_regressor, joint_types_of, knows_masses
 
 MISFIT = 0.5  # of some joint's torque power: only then is a convention looked for
 LEAST = 0.05  # of a joint's torque: where friction is all but this, there is nothing to compare
 MENDED = 0.15  # of that misfit may remain, or the convention is not what is wrong
 ALIKE = 0.95  # correlation of recorded and nominal torque that are the same but for a factor
 BETTER = 0.5  # of the residual with a mounting and a load: a convention must leave less to be taken for the cause
+NO_LINKS = 2.0  # times the residual with all links free, up to which links of one mass are not the cause
 SCALES = (0.2, 5.0)  # factors that a wrong torque constant may have
 SAMPLES = 1500
 RIGHT_ANGLES = (0.0, np.pi / 2, np.pi, -np.pi / 2)
@@ -119,6 +120,13 @@ def _misfit(problem: Problem, motion: Motion) -> np.ndarray:
     return np.mean((recorded - model) ** 2, axis=0)
 
 
+def _left_by_links(problem: Problem, motion: Motion) -> float:
+    """Misfit of all joints with any bodies on all links."""
+    assert has_regressor(problem.nominal), "a model that knows its masses or has bodies"
+    links = [problem.nominal.link_regressor(j, motion.q, motion.v, motion.a) for j in range(motion.n_dof)]
+    return _left_by_bodies(problem, motion, np.concatenate(links, axis=2))
+
+
 def _left_by_physics(problem: Problem, motion: Motion) -> float:
     """Misfit of all joints with the arm mounted as torque asks for and any body on its last link.
 
@@ -128,8 +136,12 @@ def _left_by_physics(problem: Problem, motion: Motion) -> float:
     nominal = turned.nominal
     if not has_regressor(nominal):
         return float(_misfit(turned, motion).sum())
-    model = nominal.inverse_dynamics(motion.q, motion.v, motion.a)
-    body = nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a)
+    return _left_by_bodies(turned, motion, nominal.link_regressor(motion.n_dof - 1, motion.q, motion.v, motion.a))
+
+
+def _left_by_bodies(problem: Problem, motion: Motion, body: np.ndarray) -> float:
+    """Misfit of all joints with bodies added, by their regressor, shape (n, dof, k)."""
+    model = problem.nominal.inverse_dynamics(motion.q, motion.v, motion.a)
     recorded = _recorded(motion)
     signals = _beside_own(motion, np.concatenate([recorded[..., None], (recorded - model)[..., None], body], axis=2))
     columns, residual = signals[..., 2:].reshape(-1, body.shape[2]), signals[..., 1].ravel()
@@ -175,7 +187,11 @@ def _refuse_scales(problem: Problem, motion: Motion, most: float) -> None:
     alike, factor = (np.diag(x) for x in _likeness(problem, motion))
     off = (alike > ALIKE) & ((factor < SCALES[0]) | (factor > SCALES[1]))
     scaled = replace(motion, recorded=_recorded(motion) / np.where(off, factor, 1.0))
-    if off.any() and _misfit(problem, scaled).sum() < most:
+    if not off.any():
+        return
+    if not knows_masses(problem.nominal):
+        most = min(most, NO_LINKS * _left_by_links(problem, motion))
+    if _misfit(problem, scaled).sum() < most:
         listed = ", ".join(f"{float(f'{factor[j]:.2g}'):g} at {problem.joints[j]}" for j in np.flatnonzero(off))
         raise DiagnosisError(
             f"recorded torques are far from the model's by a factor: {listed}",

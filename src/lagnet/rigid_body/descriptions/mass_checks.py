@@ -1,4 +1,4 @@
-"""Masses that no real arm has: said aloud, and refused where no dynamics are left."""
+"""Masses that no real arm has: said aloud, and refused where motion under torque is asked for and none is defined."""
 
 from __future__ import annotations
 
@@ -11,13 +11,17 @@ from lagnet.rigid_body.untyped_pinocchio import Model, pin
 SINGULAR = 1e-10  # of the largest eigenvalue of a mass matrix scaled to a unit diagonal; real arms stay above 1e-4
 POSES = 5
 MOST_JOINTS = 256  # tables grow as the square: two thousand joints take more than a gigabyte
+KINEMATICS_ALONE = (
+    "no link has mass: kinematics alone. A diagnosis finds what recordings determine of the links; the model itself"
+    " cannot be simulated"
+)
 
 
 def mass_warnings(model: Model, where: str) -> list[str]:
-    """Warnings on bodies without mass and on a mass matrix without inverse.
+    """Warnings on bodies without mass, and on a mass matrix without inverse.
 
     Raises:
-        RobotError: a joint with nothing that has mass behind it, or more than 256 joints.
+        RobotError: more than 256 joints.
     """
     if model.nv > MOST_JOINTS:
         raise RobotError(
@@ -25,15 +29,22 @@ def mass_warnings(model: Model, where: str) -> list[str]:
             where=where,
             next_step="give a model of the part that moves, other joints fixed",
         )
-    _check_subtrees(model, where)
+    masses = np.array([model.inertias[i].mass for i in range(1, model.njoints)])
+    if not masses.any():
+        return [KINEMATICS_ALONE]
     warnings = []
-    for i in range(1, model.njoints):
-        if model.inertias[i].mass <= 0:
-            warnings.append(f"the body behind joint {model.names[i]} has a mass of {model.inertias[i].mass:g} kg")
+    for i, mass in enumerate(masses, start=1):
+        if mass <= 0:
+            warnings.append(f"the body behind joint {model.names[i]} has a mass of {mass:g} kg")
     return warnings + _singular_warnings(model)
 
 
-def _check_subtrees(model: Model, where: str) -> None:
+def require_mass(model: Model, where: str) -> None:
+    """Nothing for an arm that torque can move.
+
+    Raises:
+        RobotError: a joint with nothing that has mass behind it.
+    """
     for i in range(1, model.njoints):
         bodies = [model.inertias[j] for j in model.subtrees[i]]
         if all(body.mass == 0 and not np.any(body.inertia) for body in bodies):

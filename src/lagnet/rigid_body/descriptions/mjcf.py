@@ -19,7 +19,7 @@ from lagnet.rigid_body.descriptions.description import (
     friction_warning,
     moving_bodies,
 )
-from lagnet.rigid_body.descriptions.mass_checks import mass_warnings
+from lagnet.rigid_body.descriptions.mass_checks import mass_warnings, require_mass
 from lagnet.rigid_body.descriptions.mjcf_checks import SUPPORTED, reduce_mjcf
 from lagnet.rigid_body.descriptions.mjcf_frames import Reading, placement, shape_inertia, stated_inertia
 from lagnet.rigid_body.descriptions.urdf_checks import numbers
@@ -54,6 +54,7 @@ def read_mjcf(file: XmlFile, held: Mapping[str, float] = NONE_HELD) -> Descripti
     if model.nv == 0:
         raise RobotError("has no moving joint", where=where)
     warnings += friction_warning(reader.declared["friction"]) + left_out_warnings(reader.declared)
+    require_mass(model, where)  # a simulator that reads the file refuses it as well
     warnings += mass_warnings(model, where)
     links = moving_bodies(model)
     inertials = tuple((link, model.inertias[i + 1].toDynamicParameters()) for i, link in enumerate(links))

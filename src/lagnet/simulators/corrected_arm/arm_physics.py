@@ -154,6 +154,7 @@ def arm_physics(model: Robot | CorrectedModel) -> ArmPhysics:
 
     Raises:
         ModelError: the model has no bodies, so that no simulator can hold it.
+        RobotError: a joint has nothing with mass behind it, corrections counted.
     """
     nominal, effects, blur = _flattened(model)
     if not isinstance(nominal, Robot):
@@ -173,6 +174,7 @@ def arm_physics(model: Robot | CorrectedModel) -> ArmPhysics:
             arm = ADDED[effect.effect](arm, effect.joint, effect.values)
     for layer in _identified_layers(model):
         arm = _with_identified(arm, layer)
+    arm.robot.require_mass()
     return arm
 
 

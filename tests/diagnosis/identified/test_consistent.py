@@ -1,0 +1,50 @@
+"""Bodies that can exist, drawn towards those of the model, whatever size the model takes links for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagnet.diagnosis.identified.consistent import FAR, rounded, towards_found_size
+from lagnet.rigid_body.inertia import BODY, is_physically_consistent
+from lagnet.rigid_body.random_arm import random_arm
+
+ARM = random_arm(3, seed=12, kinds=("revolute",), fixed=False)
+
+
+def cost(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """G = YᵀY and m = Yᵀτ of the true bodies."""
+    q, v, a = np.random.default_rng(seed).normal(size=(3, 60, 3))
+    columns = ARM.joint_torque_regressor(q, v, a).reshape(-1, 3 * BODY)
+    return columns.T @ columns, columns.T @ (columns @ ARM.inertial_parameters().ravel())
+
+
+@pytest.mark.parametrize("size", [1e-3, 0.02, 50.0, 1e3])
+def test_links_of_quite_another_size_are_drawn_towards_links_of_the_found_size(size: float) -> None:
+    prior = rounded(size * ARM.inertial_parameters())
+    found = towards_found_size(*cost(), prior)
+    np.testing.assert_allclose(found, towards_found_size(*cost(), 1e-6 * prior), rtol=1e-9)
+    assert 0.5 < found[:, 0].sum() / ARM.inertial_parameters()[:, 0].sum() < 2.0
+    assert np.all(is_physically_consistent(found))
+
+
+@pytest.mark.parametrize("size", [1.5 / FAR, 1.0, 0.6 * FAR])
+def test_links_of_about_the_found_size_stay_what_the_model_says(size: float) -> None:
+    prior = rounded(size * ARM.inertial_parameters())
+    assert towards_found_size(*cost(), prior) is prior
+
+
+@pytest.mark.parametrize("heavier", [1.0, 40.0])
+def test_links_without_mass_are_drawn_towards_balls_of_about_the_found_size(heavier: float) -> None:
+    gram, moment = cost()
+    balls = towards_found_size(gram, heavier * moment, rounded(np.zeros((3, BODY))))
+    assert np.all(is_physically_consistent(balls))
+    assert np.ptp(balls[:, 0]) == 0.0
+    x = balls.ravel()
+    assert 1.0 / FAR <= float(heavier * moment @ x) / float(x @ gram @ x) <= FAR
+
+
+def test_torque_that_no_such_links_have_leaves_the_model_as_it_is() -> None:
+    gram, moment = cost()
+    prior = rounded(ARM.inertial_parameters())
+    assert towards_found_size(gram, -moment, prior) is prior
