@@ -43,9 +43,11 @@ def correct(state: DiagnosisState, held: Sequence[Recording], ends_of: Sequence[
     if beside is not None or remains:
         samples = state.equations.samples / state.selection.scales.inefficiency
         instead = instead_of_names(lasting(state.problem, state.events), state.effects, beside, significant, samples)
-    kept = frozenset((e.effect, e.joint) for e in kept_among(state.effects) if e.always_acts)
-    model = replace(state.corrected, identified=_layer_of(beside), instead=_layer_of(instead), kept=kept)
-    found = beside if instead is None else instead
+    names = kept_among(state.effects) if instead is None else instead.kept
+    kept = frozenset((e.effect, e.joint) for e in names if e.always_acts)
+    found = beside if instead is None else instead.found
+    in_place = None if instead is None else instead.found.layer
+    model = replace(state.corrected, identified=_layer_of(beside), instead=in_place, kept=kept)
     if found is not None or remains:
         learned = learn_remainder(state.problem, model, state.seed, floor=significant)
     model = replace(model, remainder=learned)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.identified.consistent import FAR, rounded, towards_found_size
+from lagnet.diagnosis.identified.consistent import FAR, predicts_better, rounded, towards_found_size
 from lagnet.rigid_body.inertia import BODY, is_physically_consistent
 from lagnet.rigid_body.random_arm import random_arm
 
@@ -48,3 +48,32 @@ def test_torque_that_no_such_links_have_leaves_the_model_as_it_is() -> None:
     gram, moment = cost()
     prior = rounded(ARM.inertial_parameters())
     assert towards_found_size(gram, -moment, prior) is prior
+
+
+def blocks(*per_joint: list[float]) -> np.ndarray:
+    """Squared errors of each joint on six held-out blocks, shape (6, dof)."""
+    return np.array(per_joint).T
+
+
+LEAST = [1.0, 1.1, 0.9, 1.0, 1.05, 0.95]
+
+
+def test_links_leave_the_model_where_blocks_agree_that_they_predict_better() -> None:
+    before, after = blocks(LEAST, LEAST), blocks([0.7 * x for x in LEAST], [1.02 * x for x in LEAST])
+    assert predicts_better(after, before)
+    assert not predicts_better(before, after)
+
+
+def test_one_block_that_gains_is_not_enough() -> None:
+    before, after = blocks(LEAST, LEAST), blocks([0.1, *LEAST[1:]], LEAST)
+    assert after.sum() < 0.95 * before.sum()
+    assert not predicts_better(after, before)
+
+
+def test_no_joint_is_given_up_for_a_smaller_gain_of_another() -> None:
+    before, after = blocks(LEAST, LEAST), blocks([0.9 * x for x in LEAST], [1.3 * x for x in LEAST])
+    assert not predicts_better(after, before)
+
+
+def test_a_gain_of_a_hundredth_does_not_move_the_links() -> None:
+    assert not predicts_better(blocks([0.99 * x for x in LEAST]), blocks(LEAST))

@@ -73,9 +73,22 @@ def test_a_spring_acts_on_beside_a_layer_in_the_place_of_gains() -> None:
     problem = posed(arm, Plant(real, [lambda q, v, a, load: 6.0 * (q - 0.2) * (np.arange(3) == 1)]))
     names = [*(NamedEffect("torque_gain", j, {"g": g}) for j, g in enumerate(HEAVIER)), spring]
     assert kept_among(names) == (spring,)
-    found = instead_of_names(problem, names, identify(problem, names))
-    assert found is not None
-    assert found.choice.nmse[1] < 0.1 * identify(problem, ()).choice.nmse[1]
+    instead = instead_of_names(problem, names, identify(problem, names))
+    assert instead is not None
+    assert instead.kept == (spring,)
+    assert instead.found.choice.nmse[1] < 0.1 * identify(problem, ()).choice.nmse[1]
+
+
+def test_a_spring_in_the_place_of_a_wrong_link_is_given_up() -> None:
+    arm = random_arm(3, seed=21, kinds=("revolute",), fixed=False)
+    problem = posed(arm, Plant(arm.with_inertial_parameters(arm.inertial_parameters() * HEAVIER[:, None])))
+    wrong = [NamedEffect("joint_spring", 1, {"k": -8.0, "q0": 0.9})]
+    beside = identify(problem, wrong)
+    instead = instead_of_names(problem, wrong, beside)
+    assert instead is not None
+    assert instead_of_names(problem, wrong, beside, floor=problem.scale) is not None, "whatever it leaves here"
+    assert instead.kept == ()
+    assert np.all(instead.found.choice.nmse <= 1.01 * identify(problem, ()).choice.nmse)
 
 
 def test_a_layer_in_the_place_of_the_names_says_so() -> None:

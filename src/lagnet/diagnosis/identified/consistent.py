@@ -19,7 +19,8 @@ from lagnet.diagnosis.identified.folds import Choice, block_folds
 from lagnet.rigid_body.consistent_fit import consistent_path
 from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
-NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: that which predicts held-out blocks best
+NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: the next where it predicts held-out blocks better
+GAIN, SURE = 0.05, 2.0  # of their error, summed over joints, and standard errors of their mean, that it must gain
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
 RADIUS = 0.1  # [m] of the ball that replaces such a link
 FAR = 3.0  # times the modelled links, all together: lighter or heavier ones are drawn towards links of the found size
@@ -49,13 +50,28 @@ def consistent_unknowns(
     found = []
     for (x, bodies), *of_folds in zip(fits, *parts, strict=False):
         if not np.any(squared_errors(design, sums, x) > limit):
-            errors = (squared_errors(design, f.held_out, part) for f, (part, _) in zip(folds, of_folds, strict=True))
-            found.append((x, bodies, np.maximum(sum(errors), 1e-300)))
+            errors = [squared_errors(design, f.held_out, part) for f, (part, _) in zip(folds, of_folds, strict=True)]
+            found.append((x, bodies, np.array(errors)))
     if not found:
         return free, design.unscaled(free)[: design.n_bodies].reshape(-1, BODY)
-    least = np.min([unseen for _, _, unseen in found], axis=0)
-    x, bodies, _ = min(found, key=lambda one: float(np.max(one[2] / least)))  # no joint is given up for another
-    return x, bodies
+    best = found[0]
+    for other in found[1:]:
+        if predicts_better(other[2], best[2]):
+            best = other
+    return best[0], best[1]
+
+
+def predicts_better(other: np.ndarray, best: np.ndarray) -> bool:
+    """Whether blocks agree that links drawn less towards the model predict better, all joints together.
+
+    Motion that shows little of the links has few blocks that agree, and what is fitted to it holds nowhere else.
+
+    Args:
+        other, best: squared errors of each joint on held-out blocks, shape (blocks, dof).
+    """
+    gain = np.sum((best - other) / np.maximum(best.mean(axis=0), 1e-300), axis=1)  # of each block
+    scatter = float(gain.std(ddof=1)) / np.sqrt(len(gain))
+    return float(gain.mean()) > max(GAIN, SURE * scatter)
 
 
 def squared_errors(design: Design, sums: Sequence[JointEquations], x: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ recordings decide: the names' parameters have seen them, which the final predict
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,21 @@ from lagnet.effects.effect import Effect
 from lagnet.models.corrected.named_effects import NamedEffect, torque_with
 
 REPLACED = ("rotor_inertia", "torque_offset", "torque_gain", "coupled_transmission")  # beside friction and bodies
+SPRING = "joint_spring"  # that no layer has a function of, though links and curves over position come near to it
 TIE = 1e-3  # mean over joints of ln(error in place of the names / error beside them): within it names stay
+
+
+@dataclass(frozen=True, eq=False)
+class Instead:
+    """A layer in the place of names.
+
+    Args:
+        found: the layer.
+        kept: the names that it stands beside.
+    """
+
+    found: Identified
+    kept: tuple[NamedEffect, ...]
 
 
 def instead_of_names(
@@ -29,8 +43,11 @@ def instead_of_names(
     beside: Identified | None,
     floor: np.ndarray | float = 0.0,
     samples: np.ndarray | float = np.inf,
-) -> Identified | None:
+) -> Instead | None:
     """The layer in the place of effects that it has functions of, where it predicts unseen blocks better; else None.
+
+    Springs, which stand for links and curves as gains do, are given up as well where blocks are predicted better still,
+    and also where names leave noise alone: a spring that others could be as well holds nowhere else.
 
     Args:
         problem: the diagnosis' problem.
@@ -41,14 +58,20 @@ def instead_of_names(
     """
     rest = kept_among(effects)
     with_names = _error_of(problem, effects) if beside is None else _block_error(beside)
-    if len(rest) == len(effects) or np.all(with_names <= np.square(floor)):
+    without_springs = tuple(e for e in rest if e.effect != SPRING)
+    others = [rest] if len(without_springs) == len(rest) else [rest, without_springs]
+    if others == [rest] and (len(rest) == len(effects) or np.all(with_names <= np.square(floor))):
         return None
-    alone = identify(problem, rest)
-    if alone is None:
-        return None
-    unseen = with_names * _optimism([e for e in effects if e not in rest], samples, problem.n_dof)
-    ratio = np.maximum(_block_error(alone), 1e-300) / np.maximum(unseen, 1e-300)
-    return alone if np.mean(np.log(ratio)) < -TIE else None
+
+    def beyond(kept: tuple[NamedEffect, ...], alone: Identified) -> float:
+        """Mean over joints of ln(error in the place of the names / error beside them)."""
+        unseen = with_names * _optimism([e for e in effects if e not in kept], samples, problem.n_dof)
+        return float(np.mean(np.log(np.maximum(_block_error(alone), 1e-300) / np.maximum(unseen, 1e-300))))
+
+    tried = [(kept, identify(problem, kept)) for kept in others if len(kept) < len(effects)]
+    found = [(beyond(kept, alone), Instead(alone, kept)) for kept, alone in tried if alone is not None]
+    least, best = min(found, key=lambda one: one[0], default=(0.0, None))
+    return best if least < -TIE else None
 
 
 def kept_among(effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
