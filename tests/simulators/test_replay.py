@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lagnet.errors import RobotError
+from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel, NamedEffect
+from lagnet.models.corrected.motion_terms import Rest
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.simulators.before_after import TABLE_RATE, BeforeAfter, before_and_after, columns_of
@@ -69,3 +72,18 @@ def test_trajectories_are_kept_at_no_more_than_their_rate(result: BeforeAfter) -
     every = round(RATE / TABLE_RATE)
     np.testing.assert_array_equal(columns["q_before_1"], result.before.runs[0].q[::every, 1])
     assert result.to_json()["units"] == ["rad", "rad"]
+
+
+def test_links_without_mass_are_replayed_as_recordings_determine_them_and_not_before() -> None:
+    empty = ARM.with_inertial_parameters(np.zeros((2, 10)))
+    layer = IdentifiedLayer(ARM.inertial_parameters(), (), np.zeros(0), Rest(BLUR, np.zeros(2)))
+    time = np.arange(600) / RATE
+    q = np.column_stack([0.2 * np.sin(3.0 * time), 0.2 * np.cos(2.0 * time)])
+    recording = Recording(time, q, None, ARM.joints, command=q, path="run.csv")
+    settings = ReplaySettings(servo=Servo(KP, KD))
+    found = before_and_after(CorrectedModel(empty, (), BLUR, identified=layer), [recording], settings)
+    assert found.after is None
+    known = before_and_after(ARM, [recording], settings)
+    np.testing.assert_allclose(found.before.runs[0].q, known.before.runs[0].q, atol=1e-6)
+    with pytest.raises(RobotError, match="nothing behind joint joint_0 has mass"):
+        before_and_after(empty, [recording], settings)

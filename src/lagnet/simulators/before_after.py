@@ -13,12 +13,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from lagnet.errors import RobotError
 from lagnet.files import write_whole
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.servo_driven import ServoDrivenModel
 from lagnet.recordings.recording import Recording
 from lagnet.rigid_body.descriptions.writing import write_text
 from lagnet.rigid_body.robot import Robot
+from lagnet.simulators.corrected_arm.arm_physics import arm_physics
 from lagnet.simulators.replay import Replay, ReplaySettings, bare_robot, replay, replay_reference
 from lagnet.simulators.servo_replay import replay_servos, replay_servos_reference
 
@@ -103,9 +105,18 @@ def before_and_after(
         return _servos_before_and_after(model, recordings, settings)
     nominal = bare_robot(model) if nominal is None else nominal
     units, after = units_of(bare_robot(model)), None if model is nominal else replay(model, recordings, settings)
-    if after is not None and not bare_robot(nominal).can_move:
+    if after is not None and not _can_move(nominal):
         return BeforeAfter(after, None, units)
     return BeforeAfter(replay(nominal, recordings, settings), after, units)
+
+
+def _can_move(model: Robot | CorrectedModel) -> bool:
+    """Whether torque moves a model: something behind each of its joints has mass."""
+    try:
+        arm_physics(model)
+    except RobotError:
+        return False
+    return True
 
 
 def _servos_before_and_after(
