@@ -20,7 +20,7 @@ from lagnet.rigid_body.consistent_fit import consistent_path
 from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_body, pseudo_inertia
 
 NATS = (1.0, 0.1, 0.01, 0.001)  # w, nats per unit of divergence: the next where it predicts held-out blocks better
-GAIN, SURE = 0.05, 2.0  # of their error, summed over joints, and standard errors of their mean, that it must gain
+GAIN, SURE = 0.02, 2.0  # of their error, summed over joints, and standard errors of their mean, that it must gain
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
 RADIUS = 0.1  # [m] of the ball that replaces such a link
 FAR = 3.0  # times the modelled links, all together: lighter or heavier ones are drawn towards links of the found size
