@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from validation.real_arms.rough import kilograms
 
 from lagnet.diagnosis.problem.noise_floor import noise_floor
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
@@ -81,3 +82,8 @@ def pose(arm: Any, recording: Any, unseen: Any) -> Posed:
     library = build_library(problem)
     equations = sum_normal_equations(library, collect_block_grams(problem, library, problem.fit))
     return Posed(problem, fit, library, equations, noise_floor(problem, fit, 0))
+
+
+def of_one_mass(robot: Any, mass: float) -> Any:
+    """A robot whose links have one mass [kg] each at the origin of their joint, as templates of robot files have."""
+    return robot.with_inertial_parameters(mass * kilograms(robot, np.random.default_rng(0)))

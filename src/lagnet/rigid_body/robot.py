@@ -9,11 +9,10 @@ from typing import Any, final
 
 import numpy as np
 
-from lagnet.errors import RobotError
 from lagnet.rigid_body import batches, pinocchio_models
 from lagnet.rigid_body.body_tree import TreeBody, tree_of
 from lagnet.rigid_body.descriptions.description import NONE_HELD, Description
-from lagnet.rigid_body.descriptions.mass_checks import require_mass
+from lagnet.rigid_body.descriptions.mass_checks import joints_without_mass, require_mass
 from lagnet.rigid_body.descriptions.reading import read_description
 from lagnet.rigid_body.descriptions.writing import bare_urdf_text, mjcf_text, urdf_text, write_text
 from lagnet.rigid_body.inertia import parameters_of_body
@@ -51,8 +50,6 @@ class Robot:
         position_lower, position_upper, velocity_limit, effort_limit: shape (dof,), inf where unlimited.
         armature: shape (dof,), inertia of the motors felt at the joints [kg m²]; MJCF alone can declare it.
         gravity: shape (3,), in the frame of the base [m/s²].
-        has_mass: False where no link has mass: kinematics alone.
-        knows_masses: False there, and where all links but one at most have one mass, which may be a placeholder.
         kind: 'urdf', 'mjcf' or 'named_robot'.
         source: the name or path that was asked for; sha256: checksum of the file behind it.
         link_inertials: (link name, ten parameters in the link's frame) as a URDF gives them, before merging.
@@ -72,8 +69,6 @@ class Robot:
         self.effort_limit = pinocchio_models.limit(model.upperEffortLimit)
         self.armature = pinocchio_models.frozen(model.armature)
         self.gravity = pinocchio_models.frozen(model.gravity.linear)
-        masses = pinocchio_models.inertial_parameters(model)[:, 0]
-        self.has_mass, self.knows_masses = bool(masses.any()), not are_placeholders(masses)
         self.kind, self.source, self.sha256 = description.kind, description.source, description.file.sha256
         self.link_inertials, self.warnings = description.link_inertials, description.warnings
 
@@ -104,13 +99,19 @@ class Robot:
         return found
 
     @property
+    def has_mass(self) -> bool:
+        """Whether any link has mass: False for kinematics alone."""
+        return bool(np.any(self.inertial_parameters()[:, 0]))
+
+    @property
+    def knows_masses(self) -> bool:
+        """Whether masses can be no placeholders: False without any, and where all but one at most are the same."""
+        return not are_placeholders(self.inertial_parameters()[:, 0])
+
+    @property
     def can_move(self) -> bool:
         """Whether something behind every joint has mass, so that torque moves it."""
-        try:
-            self.require_mass()
-        except RobotError:
-            return False
-        return True
+        return not joints_without_mass(self._model)
 
     def require_mass(self) -> None:
         """Nothing for an arm that torque can move.

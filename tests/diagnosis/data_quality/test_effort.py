@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.diagnosis.posed import of_one_mass
 from validation.bad_data.sound import SoundSettings, sound_recording
 
 from lagnet.diagnosis.data_quality.inspect import inspect_quality
@@ -56,17 +57,12 @@ def scaled(robot: Robot, factors) -> Robot:
     return robot.with_inertial_parameters(robot.inertial_parameters() * np.asarray(factors)[:, None])
 
 
-def kilograms(robot: Robot, mass: float) -> Robot:
-    """Links of one mass at the origins of their joints."""
-    return robot.with_inertial_parameters(mass * np.tile([1, 0, 0, 0, 1e-3, 0, 1e-3, 0, 0, 1e-3], (6, 1)))
-
-
 WRONG_MODELS = {
     "half the masses": lambda robot: scaled(robot, np.full(6, 0.5)),
     "double masses": lambda robot: scaled(robot, np.full(6, 2.0)),
     "light wrists": lambda robot: scaled(robot, [1.0, 1.0, 1.0, 0.1, 0.1, 0.1]),
-    "a kilogram for each link": lambda robot: kilograms(robot, 1.0),
-    "a gram for each link": lambda robot: kilograms(robot, 1e-3),
+    "a kilogram for each link": lambda robot: of_one_mass(robot, 1.0),
+    "a gram for each link": lambda robot: of_one_mass(robot, 1e-3),
     "no link has mass": lambda robot: robot.with_inertial_parameters(np.zeros((6, 10))),
     "on a wall": lambda robot: robot.with_gravity(np.array([9.81, 0.0, 0.0])),
     "on a ceiling": lambda robot: robot.with_gravity(np.array([0.0, 0.0, 9.81])),

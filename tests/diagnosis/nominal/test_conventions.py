@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.diagnosis.posed import of_one_mass
 from validation.whole_joints.plants import draw
 
 from lagnet.cli.main import main
@@ -97,12 +98,6 @@ def test_a_load_that_turns_the_torque_of_the_last_joint_round_is_no_convention(p
         moment = times * body[1:4]
         loaded = arm.with_payload(1.0, moment, 1e-3 * np.eye(3))
         refuse_other_conventions(pose_problem(arm, *(condition([plant(robot=loaded).record(s)], 8.0) for s in (1, 2))))
-
-
-def of_one_mass(arm, mass):
-    """Links of one mass at the origins of their joints."""
-    links = mass * np.tile([1.0, 0, 0, 0, 1e-3, 0, 1e-3, 0, 0, 1e-3], (arm.n_dof, 1))
-    return arm.with_inertial_parameters(links)
 
 
 @pytest.mark.parametrize("knows", [True, False])

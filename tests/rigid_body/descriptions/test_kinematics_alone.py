@@ -43,6 +43,14 @@ def test_it_is_read_with_its_kinematics_and_a_warning(tmp_path) -> None:
     np.testing.assert_allclose(robot.joint_torque_regressor(q, v, a), ARM.joint_torque_regressor(q, v, a), atol=1e-9)
 
 
+def test_inertials_of_zeros_are_none(tmp_path) -> None:
+    ARM.with_inertial_parameters(np.zeros((3, 10))).write_urdf(tmp_path / "arm.urdf")
+    assert "<mass" in (tmp_path / "arm.urdf").read_text()
+    robot = load_description(tmp_path / "arm.urdf")
+    assert robot.warnings == (KINEMATICS_ALONE,)
+    assert not robot.can_move
+
+
 def test_torque_cannot_move_it(tmp_path) -> None:
     robot, still = without_inertials(tmp_path), np.zeros((1, 3))
     assert not robot.can_move

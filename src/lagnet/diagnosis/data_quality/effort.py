@@ -44,7 +44,7 @@ def effort_findings(recordings: Sequence[Recording], robot: Any, evidence: Evide
         found = effort_column([r.rows(slice(0, LONGEST)) for r in _few(recordings)], robot, most=MOST)
     except (LagnetError, np.linalg.LinAlgError):
         return ()
-    if not _beyond_a_wrong_model(found) or (_is_told_by_size(found) and not knows_masses(robot)):
+    if not _beyond_a_wrong_model(found, robot):
         return ()
     if found.kind not in COPIES:
         otherwise = float(geometric_mean(misfits_with_mounting_and_body(evidence)))
@@ -59,15 +59,13 @@ def _few(recordings: Sequence[Recording]) -> Sequence[Recording]:
     return recordings[::every][:RECORDINGS]
 
 
-def _is_told_by_size(found: EffortFinding) -> bool:
-    """Whether the size of the model's torque tells it: no placeholder's does."""
-    return found.kind in OF_SIZE or found.unit in UNIT_IN_NEWTON_METRES
-
-
-def _beyond_a_wrong_model(found: EffortFinding) -> bool:
+def _beyond_a_wrong_model(found: EffortFinding, robot: Any) -> bool:
     if found.kind == "constant" or found.n_changing < FEWEST_JOINTS:
         return False  # a column that never changes is a dead channel, which has a check of its own
-    if found.kind not in OF_SIZE:
+    by_size = found.kind in OF_SIZE
+    if (by_size or found.unit in UNIT_IN_NEWTON_METRES) and not knows_masses(robot):
+        return False  # the torque of placeholders has no size
+    if not by_size:
         return True
     factors = np.abs([s for s in found.scale if s])
     return bool(factors.size) and abs(float(np.mean(np.log(factors)))) > np.log(FAR)

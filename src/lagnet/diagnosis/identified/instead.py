@@ -59,9 +59,9 @@ def instead_of_names(
     rest = kept_among(effects)
     with_names = _error_of(problem, effects) if beside is None else _block_error(beside)
     without_springs = tuple(e for e in rest if e.effect != SPRING)
-    others = [rest] if len(without_springs) == len(rest) else [rest, without_springs]
-    if others == [rest] and (len(rest) == len(effects) or np.all(with_names <= np.square(floor))):
+    if rest == without_springs and np.all(with_names <= np.square(floor)):
         return None
+    others = [rest] if rest == without_springs else [rest, without_springs]
 
     def beyond(kept: tuple[NamedEffect, ...], alone: Identified) -> float:
         """Mean over joints of ln(error in the place of the names / error beside them)."""

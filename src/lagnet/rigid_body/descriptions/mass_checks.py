@@ -45,14 +45,18 @@ def require_mass(model: Model, where: str) -> None:
     Raises:
         RobotError: a joint with nothing that has mass behind it.
     """
-    for i in range(1, model.njoints):
-        bodies = [model.inertias[j] for j in model.subtrees[i]]
-        if all(body.mass == 0 and not np.any(body.inertia) for body in bodies):
-            raise RobotError(
-                f"nothing behind joint {model.names[i]} has mass",
-                where=where,
-                next_step=f"give link {moving_bodies(model)[i - 1]} an inertial, or make the joint fixed",
-            )
+    for i in joints_without_mass(model):
+        raise RobotError(
+            f"nothing behind joint {model.names[i]} has mass",
+            where=where,
+            next_step=f"give link {moving_bodies(model)[i - 1]} an inertial, or make the joint fixed",
+        )
+
+
+def joints_without_mass(model: Model) -> list[int]:
+    """Pinocchio's numbers of the joints behind which no body has mass or inertia: torque cannot move these."""
+    empty = [body.mass == 0 and not np.any(body.inertia) for body in model.inertias]
+    return [i for i in range(1, model.njoints) if all(empty[j] for j in model.subtrees[i])]
 
 
 def _singular_warnings(model: Model) -> list[str]:
