@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
+from lagnet.errors import RecordingError
 from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
 from lagnet.recordings.conditioning.condition import condition, motion_at_samples
 from lagnet.recordings.conditioning.noise import white_noise
@@ -255,3 +256,13 @@ def test_the_low_pass_is_scipys_forth_and_back(shape: tuple[int, ...]) -> None:
     sections = butter(ORDER, 5.0, fs=100.0, output="sos")
     expected = sosfiltfilt(sections, x, axis=0, padlen=min(shape[0] - 1, 40))
     np.testing.assert_array_equal(low_pass(x, 100.0, 5.0), expected)
+
+
+def test_recordings_of_pieces_too_short_to_differentiate_are_refused_with_how_long_they_are() -> None:
+    time = np.arange(60) / RATE
+    broken = record(time + (np.arange(60) >= 30))  # a second's gap in the middle
+    for short in ([record(time[:20])], [broken, record(time[:12])]):
+        longest = max(rows.stop - rows.start for r in short for rows in stretches_of(r))
+        with pytest.raises(RecordingError, match=f"{longest} samples without a gap are too few to differentiate"):
+            condition(short)
+    assert len(condition([broken, record(time)]).stretches) == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.errors import RecordingError
 from lagnet.recordings.recording import Recording
 from lagnet.types import Trajectory
 
@@ -18,15 +17,7 @@ def motion_of(recording: Recording) -> tuple[Trajectory, Trajectory, Trajectory,
     if recording.v is not None and recording.a is not None:
         return recording.q, recording.v, recording.a, "recorded"
     from lagnet.recordings.conditioning.condition import condition, motion_at_samples
-    from lagnet.recordings.conditioning.smoothing import SHORTEST
-    from lagnet.recordings.conditioning.stretches import stretches_of
 
-    if all(rows.stop - rows.start < SHORTEST for rows in stretches_of(recording)):
-        raise RecordingError(
-            f"{len(recording)} samples are too few to differentiate",
-            where=recording.path or None,
-            next_step="record longer, or give columns v_i and a_i",
-        )
     conditioned = condition([recording])
     q, v, a = motion_at_samples(recording, conditioned, 0)
     return np.asarray(q), np.asarray(v), np.asarray(a), "differentiated"

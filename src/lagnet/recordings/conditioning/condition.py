@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
+from lagnet.errors import RecordingError
 from lagnet.recordings.conditioning.bandwidth import choose_bandwidth
 from lagnet.recordings.conditioning.noise import band_noise, white_noise
 from lagnet.recordings.conditioning.smoothing import SHORTEST, derivative, even_clock, low_pass, resample
@@ -85,10 +86,11 @@ def condition(
         torque_shift: torques are read that much later than their stamps say [s].
 
     Raises:
-        RecordingError: a recording without torque.
+        RecordingError: a recording without torque, or none long enough to differentiate.
     """
     for recording in recordings:
         _ = recording.torque
+    _require_length(recordings)
     rate = float(np.median([r.rate for r in recordings]))
     noise = _noise(recordings, rate)
     chosen = choose_bandwidth(recordings, noise) if bandwidth is None else bandwidth
@@ -117,6 +119,21 @@ def condition(
         white_tau=noise["tau"],
         torque_shift=torque_shift,
     )
+
+
+def _require_length(recordings: Sequence[Recording]) -> None:
+    """Refuses recordings of which no stretch without a gap is long enough to differentiate.
+
+    Raises:
+        RecordingError: that is so.
+    """
+    if all(len(r.used(rows)) < SHORTEST for r in recordings for rows in stretches_of(r)):
+        longest = max((rows.stop - rows.start for r in recordings for rows in stretches_of(r)), default=0)
+        raise RecordingError(
+            f"{longest} samples without a gap are too few to differentiate; {SHORTEST} are the least",
+            where=", ".join(r.path for r in recordings if r.path) or None,
+            next_step="record longer, or join what was cut into pieces",
+        )
 
 
 def _stretch(
