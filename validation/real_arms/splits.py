@@ -17,6 +17,8 @@ from validation.real_arms.layers import Case, cases, cut, read, study
 from validation.real_arms.options import parser_of
 
 from lagnet.models.files.loading import load_any
+from lagnet.recordings.loading.load import load_recording
+from lagnet.recordings.quality.screen import screen
 
 HERE = Path(__file__).resolve().parent
 UR10E_SPLITS = {
@@ -45,9 +47,17 @@ def splits(data: Path) -> dict[str, Callable[[], Case]]:
         first, last = cut(read_joint_states(data / "bags" / "ur10_exciting_trajectory.db3", robot.joints), 0.3)
         return robot, last, first
 
+    def panda_bag(share: float, turned: bool) -> Case:
+        robot = load_any("panda")
+        log = load_recording(data / "bags" / "panda_exciting_trajectory.db3", robot=robot)
+        first, last = cut(screen(log, robot).recording, share)  # on its source's clock, for the baselines, too
+        return robot, *((last, first) if turned else (first, last))
+
     return {
         **{f"{name}: turned round": (lambda name=name: turned(name)) for name in TURNED},
         "ur10: last 70 % | first 30 %": ur10,
+        "panda_bag: first 75 % | rest": lambda: panda_bag(0.75, False),
+        "panda_bag: last half | first half": lambda: panda_bag(0.5, True),
         **{name: (lambda parts=parts: of_ur10e(*parts)) for name, parts in UR10E_SPLITS.items()},
     }
 

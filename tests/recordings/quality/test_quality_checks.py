@@ -52,6 +52,10 @@ def held(r: Recording) -> Recording:
     return replace(r.rows(np.arange(N) // 5 * 5), time=r.time)
 
 
+def reread(r: Recording) -> Recording:
+    return replace(r.rows((np.arange(N) / 1.03).astype(int)), time=r.time)
+
+
 def cut_off(r: Recording) -> Recording:
     return replace(r, tau=np.clip(r.tau, -np.inf, np.quantile(r.tau, 0.9, axis=0)))
 
@@ -71,6 +75,7 @@ BROKEN: dict[str, tuple[Callable[[Recording], Recording], int, int]] = {  # faul
     "lost_packets": (lost, 2, 2),
     "held_samples": (held, N - N // 5, N - N // 5),
     "repeated_packets": (copies, 5, 5),
+    "source_clock": (reread, 55, 62),
     "outliers": (lambda r: put(r, "tau", 555, 0, 300.0), 1, 1),
     "stuck_channels": (stuck, 390, 401),
     "position_steps": (jump, 0, 0),

@@ -114,13 +114,15 @@ class QualityCheck(ABC):
         rows: np.ndarray | None = None,
         set_aside: np.ndarray = NO_ROWS,
         harmful: bool = False,
+        time: np.ndarray | None = None,
     ) -> Finding:
         """A finding of this check.
 
         Args:
             rows: where it shows, None for the whole recording.
             set_aside: samples that are not to be used.
+            time: shape (n,), of all samples [s], where it is not what the stamps say.
         """
         span = None if rows is None or not rows.size else subject.span(rows)
         path = subject.recording.path
-        return Finding(self.name, path, channel, span, certainty, detail, mend, set_aside, harmful)
+        return Finding(self.name, path, channel, span, certainty, detail, mend, set_aside, harmful, time)

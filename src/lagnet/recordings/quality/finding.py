@@ -24,6 +24,7 @@ class Finding:
         detail: one sentence: what was seen.
         mend: the line of a mapping file, or the step, that mends it.
         rows: samples that are to be set aside, increasing.
+        time: shape (n,), times [s] at which all samples were measured; None where the stamps stand.
         harmful: whether a diagnosis of these recordings would tell the fault as physics.
     """
 
@@ -36,6 +37,7 @@ class Finding:
     mend: str
     rows: np.ndarray = field(default_factory=lambda: NO_ROWS)
     harmful: bool = False
+    time: np.ndarray | None = None
 
     @property
     def refused(self) -> bool:

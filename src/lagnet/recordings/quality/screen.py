@@ -22,7 +22,7 @@ class Screened:
     """A recording after the checks.
 
     Args:
-        recording: with the samples that are set aside marked in `valid`.
+        recording: with the samples that are set aside marked in `valid`, at the times at which they were measured.
         findings: what was found, in the order of the checks.
     """
 
@@ -57,6 +57,8 @@ def screen(recording: Recording, robot: Any = None, checks: Sequence[type[Qualit
         aside = np.concatenate([f.rows for f in found]) if found else np.zeros(0, dtype=np.int64)
         if aside.size:
             recording = _without(recording, np.unique(aside))
+        for time in (f.time for f in found if f.time is not None):
+            recording = replace(recording, time=time)
     return Screened(recording, tuple(findings))
 
 

@@ -11,6 +11,7 @@ from lagnet.recordings.quality.checks.quantisation import Quantisation
 from lagnet.recordings.quality.checks.repeated_packets import RepeatedPackets
 from lagnet.recordings.quality.checks.sensor_saturation import SensorSaturation
 from lagnet.recordings.quality.checks.slow_sampling import SlowSampling
+from lagnet.recordings.quality.checks.source_clock import OtherClock
 from lagnet.recordings.quality.checks.stuck_channels import StuckChannels
 from lagnet.recordings.quality.checks.velocity_of_positions import VelocityOfPositions
 
@@ -18,6 +19,7 @@ CHECKS: tuple[type[QualityCheck], ...] = (
     ClockUnit,
     DeadChannels,
     LostPackets,
+    OtherClock,
     HeldSamples,
     RepeatedPackets,
     Outliers,
