@@ -19,6 +19,7 @@ from lagnet.diagnosis.identified.real_inertia import (
     without_negative_rotors,
 )
 from lagnet.diagnosis.identified.rest import friction_at_rest
+from lagnet.diagnosis.identified.reversals import late_bristles
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
@@ -81,7 +82,7 @@ def _fitted(
     late: set[int] = set()
     while True:
         design = make_design(problem, pieces, [*groups, *lag_groups(problem, late)])
-        design, choice = _chosen(design.without(rotors_of(design, late)))
+        design, choice = _chosen(problem, pieces, design.without(rotors_of(design, late)))
         if choice is None:
             return None
         negative = {t.joint for i, t in columns_of(design, "rotor") if choice.ridge.x[i] < 0}
@@ -92,18 +93,22 @@ def _fitted(
         late |= {rotor} | negative  # where one is no rotor, no negative one is
 
 
-def _chosen(design: Design) -> tuple[Design, Choice | None]:
-    """The solution, without friction per load where that would exceed the load; and the equations that it is of.
-
-    No gear's friction does while it moves. The load of a link that the model hardly has is next to nothing.
-    """
+def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> tuple[Design, Choice | None]:
+    """The solution, without friction that no gear has or that is late at reversals; and the equations that it is of."""
     while (choice := choose(design)) is not None:
-        weights = design.unscaled(choice.ridge.x)
-        impossible = [i for i, _ in columns_of(design, "load") if abs(weights[i]) > 1.0]
-        if not impossible:
+        spared = _impossible_friction(design, choice)
+        if not spared.size:
+            spared = late_bristles(problem, pieces, design, choice)
+        if not spared.size:
             break
-        design = design.without(np.array(impossible))
+        design = design.without(spared)
     return design, choice
+
+
+def _impossible_friction(design: Design, choice: Choice) -> np.ndarray:
+    """Unknowns of friction per load that would exceed the load: that of a link that the model hardly has is nothing."""
+    weights = design.unscaled(choice.ridge.x)
+    return np.array([i for i, _ in columns_of(design, "load") if abs(weights[i]) > 1.0], dtype=int)
 
 
 def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLayer) -> bool:
