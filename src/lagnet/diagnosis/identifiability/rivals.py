@@ -65,7 +65,7 @@ def _local_comparison(view: JointView, own: tuple[int, ...], index: int) -> Comp
                 tied.add(name)
     odds = {name: _local_odds(view, own, other) for name, (_, other) in closest.items()}
     tied.update(name for name, told in odds.items() if told < view.limits.tie_odds)
-    tied.update(_preferred_yet_refused(view, own, index))
+    tied.update(_open_to(view, own, index))
     return Comparison(index, _ranked(odds), tuple(sorted(tied)))
 
 
@@ -77,12 +77,13 @@ def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -
     return log10_odds([view.pieces], here, there, [view.least_error], float(simpler))
 
 
-def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
-    """The wider law that the evidence prefers, if it gains enough or accounts for most of what is left.
+def _open_to(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
+    """The wider law that the evidence likes best, where its further term may be there: it fits as well at least.
 
-    The search refused it at the least shape that was tried: a Stribeck speed this close to the zone that noise blurs
-    could be the blur itself. Or as too little beside what the plain law explains, whose form is never exact: but real
-    joints leave more than one further term would account for. Then both stay open.
+    Where the evidence prefers it the search refused it: at the least shape that was tried (a Stribeck speed this close
+    to the zone that noise blurs could be the blur itself), or as too little beside what the plain law explains, whose
+    form is never exact; but real joints leave more than one further term would account for. Where the evidence does not
+    tell, a term stays open that gains more than the form of the plain law may.
     """
     hypotheses = view.equations.library.hypotheses
     others = tuple(k for k in own if k != index)
@@ -91,11 +92,22 @@ def _preferred_yet_refused(view: JointView, own: tuple[int, ...], index: int) ->
     ]
     scores = {k: view.score((*others, k)) for k in wider if compatible(view, others, k)}
     best = max(scores, key=lambda k: scores[k], default=None)
-    if best is None or (scores[best] - view.score(own)) / np.log(10.0) < view.limits.tie_odds:
+    if best is None or not np.isfinite(scores[best]):
         return set()
     wider_one = (*others, best)
-    is_open = gains_over(view, wider_one, best, own) or _accounts_for_what_is_left(view, wider_one, own)
+    preferred = (scores[best] - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
+    is_open = _form_matters(view, wider_one, own, others) or (
+        preferred and (gains_over(view, wider_one, best, own) or _accounts_for_what_is_left(view, wider_one, own))
+    )
     return {hypotheses[best].effect} if is_open else set()
+
+
+def _form_matters(view: JointView, wider: tuple[int, ...], own: tuple[int, ...], others: tuple[int, ...]) -> bool:
+    """E(own) − E(wider) ≥ c · explained, not told by the odds: more than the form of the plain law may leave."""
+    told = _local_odds(view, own, wider) >= view.limits.tie_odds
+    error = view.error(own)
+    explained = min(view.error(others) - error, view.torque_power)
+    return not told and error - view.error(wider) >= view.limits.least_over_special_case * explained
 
 
 def _accounts_for_what_is_left(view: JointView, wider: tuple[int, ...], own: tuple[int, ...]) -> bool:
