@@ -25,7 +25,7 @@ ABRUPT = 0.995  # of the samples; what is rougher than these counts as they do: 
 
 
 @dataclass(frozen=True, eq=False)
-class SourceClock:
+class Clock:
     """Times at which the samples of a stretch were measured.
 
     Args:
@@ -41,7 +41,7 @@ class SourceClock:
     spread: float
 
 
-def source_clock(time: np.ndarray, q: np.ndarray, usual_step: float) -> SourceClock | None:
+def source_clock(time: np.ndarray, q: np.ndarray, usual_step: float) -> Clock | None:
     """The even clock on which positions were measured, if the stamps are off it and positions are far smoother over it.
 
     Args:
@@ -60,7 +60,7 @@ def source_clock(time: np.ndarray, q: np.ndarray, usual_step: float) -> SourceCl
         return None
     if not _roughness(clock, q) <= SMOOTHER * _roughness(time, q):
         return None
-    return SourceClock(clock, float(period), int(np.sum(counts - 1)), float(high - low))
+    return Clock(clock, float(period), int(np.sum(counts - 1)), float(high - low))
 
 
 def _periods(q: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from lagnet.recordings.quality.checks.quantisation import Quantisation
 from lagnet.recordings.quality.checks.repeated_packets import RepeatedPackets
 from lagnet.recordings.quality.checks.sensor_saturation import SensorSaturation
 from lagnet.recordings.quality.checks.slow_sampling import SlowSampling
-from lagnet.recordings.quality.checks.source_clock import OtherClock
+from lagnet.recordings.quality.checks.source_clock import SourceClock
 from lagnet.recordings.quality.checks.stuck_channels import StuckChannels
 from lagnet.recordings.quality.checks.velocity_of_positions import VelocityOfPositions
 
@@ -19,7 +19,7 @@ CHECKS: tuple[type[QualityCheck], ...] = (
     ClockUnit,
     DeadChannels,
     LostPackets,
-    OtherClock,
+    SourceClock,
     HeldSamples,
     RepeatedPackets,
     Outliers,

@@ -10,13 +10,13 @@ from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.quality.check import QualityCheck, Subject
 from lagnet.recordings.quality.finding import CERTAIN, Finding
 from lagnet.recordings.quality.runs import runs_of
-from lagnet.recordings.quality.source_clock import SourceClock, source_clock
+from lagnet.recordings.quality.source_clock import Clock, source_clock
 
 CHANNELS = 3  # that must repeat together, to the last digit, for a sample to have been read twice
 LIVELY = 0.9  # of the rows in which anything changes: channels that change in so many say whether a row is fresh
 
 
-class OtherClock(QualityCheck):
+class SourceClock(QualityCheck):
     """Positions that lie evenly on a clock from which the stamps are off: read twice, passed over, or stamped late."""
 
     name = "source_clock"
@@ -58,7 +58,7 @@ def _read_twice(subject: Subject) -> np.ndarray:
     return np.concatenate([[False], ~changes[:, lively].any(axis=1)])
 
 
-def _along(rows: np.ndarray, kept: np.ndarray, clock: SourceClock) -> np.ndarray:
+def _along(rows: np.ndarray, kept: np.ndarray, clock: Clock) -> np.ndarray:
     """Times of all rows of a stretch, shape (n,): those of the clock, and others evenly between them."""
     before, after = kept[0] - rows[rows < kept[0]], rows[rows > kept[-1]] - kept[-1]
     inside = np.interp(rows, kept, clock.time)
@@ -67,7 +67,7 @@ def _along(rows: np.ndarray, kept: np.ndarray, clock: SourceClock) -> np.ndarray
     return inside
 
 
-def _told(found: list[SourceClock], rate: float, twice: int) -> str:
+def _told(found: list[Clock], rate: float, twice: int) -> str:
     """What was seen, in one sentence."""
     period = float(np.median([clock.period for clock in found]))
     passed = sum(clock.passed_over for clock in found)
