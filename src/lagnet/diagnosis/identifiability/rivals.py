@@ -10,7 +10,6 @@ import numpy as np
 from lagnet.diagnosis.identifiability.block_odds import held_out_errors, log10_odds
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, unseen_block_errors
 from lagnet.diagnosis.selection.arm_search import Selection, least_counted, total_score, views_of
-from lagnet.diagnosis.selection.joint_search import gains_over
 from lagnet.diagnosis.selection.joint_view import JointView, compatible
 
 SHOWN = 6  # rivals that the evidence lists
@@ -97,7 +96,7 @@ def _open_to(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
     wider_one = (*others, best)
     preferred = (scores[best] - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
     is_open = _form_matters(view, wider_one, own, others) or (
-        preferred and (gains_over(view, wider_one, best, own) or _accounts_for_what_is_left(view, wider_one, own))
+        preferred and _accounts_for_what_is_left(view, wider_one, own)
     )
     return {hypotheses[best].effect} if is_open else set()
 

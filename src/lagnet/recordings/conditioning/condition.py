@@ -90,9 +90,10 @@ def condition(
     """
     for recording in recordings:
         _ = recording.torque
-    _require_length(recordings)
     rate = float(np.median([r.rate for r in recordings]))
     noise = _noise(recordings, rate)
+    if not noise:
+        raise _too_short(recordings)
     chosen = choose_bandwidth(recordings, noise) if bandwidth is None else bandwidth
     motion_band = min(WIDER * chosen, 0.4 * rate)
     source = choose_velocity(recordings, noise, rate, motion_band)
@@ -121,19 +122,14 @@ def condition(
     )
 
 
-def _require_length(recordings: Sequence[Recording]) -> None:
-    """Refuses recordings of which no stretch without a gap is long enough to differentiate.
-
-    Raises:
-        RecordingError: that is so.
-    """
-    if all(len(r.used(rows)) < SHORTEST for r in recordings for rows in stretches_of(r)):
-        longest = max((rows.stop - rows.start for r in recordings for rows in stretches_of(r)), default=0)
-        raise RecordingError(
-            f"{longest} samples without a gap are too few to differentiate; {SHORTEST} are the least",
-            where=", ".join(r.path for r in recordings if r.path) or None,
-            next_step="record longer, or join what was cut into pieces",
-        )
+def _too_short(recordings: Sequence[Recording]) -> RecordingError:
+    """What is wrong with recordings of which no stretch without a gap is long enough to differentiate."""
+    longest = max((rows.stop - rows.start for r in recordings for rows in stretches_of(r)), default=0)
+    return RecordingError(
+        f"{longest} samples without a gap are too few to differentiate; {SHORTEST} are the least",
+        where=", ".join(r.path for r in recordings if r.path) or None,
+        next_step="record longer, or join what was cut into pieces",
+    )
 
 
 def _stretch(

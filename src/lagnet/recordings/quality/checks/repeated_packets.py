@@ -8,10 +8,9 @@ import numpy as np
 
 from lagnet.recordings.quality.check import QualityCheck, Subject
 from lagnet.recordings.quality.finding import CERTAIN, Finding
+from lagnet.recordings.quality.repeated_rows import repeated_rows
 from lagnet.recordings.quality.runs import runs_of
 
-CHANNELS = 3  # that must stand still together to the last digit
-LIVELY = 0.9  # of the rows in which such channels change: elsewhere, standing still says something
 MOVING = 0.5  # of the median step around: the joint was on its way when it seemed to stand
 AROUND = 5  # samples on both sides
 MOST = 0.3  # of the rows: beyond, signals are held, which another check tells
@@ -26,11 +25,7 @@ class RepeatedPackets(QualityCheck):
 
     def find(self, subject: Subject) -> Iterator[Finding]:
         table = np.hstack([values for _, values in subject.signals()])
-        changes = np.diff(table, axis=0) != 0
-        lively = changes.mean(axis=0) > LIVELY
-        if lively.sum() < CHANNELS:
-            return
-        copied = np.concatenate([[False], ~changes[:, lively].any(axis=1)])
+        copied = repeated_rows(table, np.ones(max(0, len(table) - 1), dtype=bool))
         copied &= _moving(subject.recording.q)
         copied[np.flatnonzero(np.diff(subject.recording.trajectory)) + 1] = False
         if subject.recording.valid is not None:

@@ -9,11 +9,9 @@ import numpy as np
 from lagnet.recordings.conditioning.stretches import stretches_of
 from lagnet.recordings.quality.check import QualityCheck, Subject
 from lagnet.recordings.quality.finding import CERTAIN, Finding
+from lagnet.recordings.quality.repeated_rows import repeated_rows
 from lagnet.recordings.quality.runs import runs_of
 from lagnet.recordings.quality.source_clock import Clock, source_clock
-
-CHANNELS = 3  # that must repeat together, to the last digit, for a sample to have been read twice
-LIVELY = 0.9  # of the rows in which anything changes: channels that change in so many say whether a row is fresh
 
 
 class SourceClock(QualityCheck):
@@ -48,14 +46,9 @@ class SourceClock(QualityCheck):
 
 
 def _read_twice(subject: Subject) -> np.ndarray:
-    """Rows that repeat the one before in every lively channel, shape (n,)."""
+    """Rows that repeat the one before, by channels that change wherever anything does, shape (n,)."""
     table = np.hstack([values for _, values in subject.signals()])
-    changes = np.diff(table, axis=0) != 0
-    fresh = changes.any(axis=1)
-    lively = changes[fresh].mean(axis=0) > LIVELY if fresh.any() else np.zeros(table.shape[1], dtype=bool)
-    if lively.sum() < CHANNELS:
-        return np.zeros(len(table), dtype=bool)
-    return np.concatenate([[False], ~changes[:, lively].any(axis=1)])
+    return repeated_rows(table, np.any(np.diff(table, axis=0) != 0, axis=1))
 
 
 def _along(rows: np.ndarray, kept: np.ndarray, clock: Clock) -> np.ndarray:
