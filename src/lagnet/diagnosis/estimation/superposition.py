@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.moved_link import MovedLink
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
@@ -56,29 +58,43 @@ class Superposition:
         self.total = load
 
     def change(self, n: int, other: NamedEffect) -> Change:
-        """By how much the torque changes if effect n becomes another of the same law and joint."""
+        """By how much the torque changes if effect n becomes another of the same law and joint, near to it.
+
+        Exact, but of first order in how far the change moves the links behind transmissions.
+        """
         own: Change = {}  # a transmission's is computed with its products
         if not self._is_of(n, "transmission"):
             own = _minus(other.added_at(self._motion.with_load(self._parts[n].seen)), self._parts[n].added)
-        return self._all_of(n, own, self._products_change(n, other), (other,))
+        moved = self._transmission_change if self._is_far(n, other) else self._transmission_slope
+        return self._all_of(n, own, self._products_change(n, other), lambda change: moved(n, other, change))
 
     def without(self, n: int) -> Change:
         """By how much the torque changes if effect n goes."""
-        products = _products(self._motion, self._with(n, ())) - self._products if self._is_of(n, "body") else 0.0
+        products = _products(self._motion, self._with(n, None)) - self._products if self._is_of(n, "body") else 0.0
         own = {} if self._is_of(n, "transmission") else _minus({}, self._parts[n].added)
-        return self._all_of(n, own, products, ())
+        return self._all_of(n, own, products, lambda change: self._transmission_change(n, None, change))
 
-    def _with(self, n: int, instead: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
-        return (*self._effects[:n], *instead, *self._effects[n + 1 :])
+    def _with(self, n: int, other: NamedEffect | None) -> tuple[NamedEffect, ...]:
+        return (*self._effects[:n], *(() if other is None else (other,)), *self._effects[n + 1 :])
 
-    def _all_of(self, n: int, change: Change, products: np.ndarray | float, instead: Sequence[NamedEffect]) -> Change:
+    def _is_far(self, n: int, other: NamedEffect) -> bool:
+        """Whether a change asks for all transmissions anew: of the field of gravity, or of when an effect acts."""
+        return other.effect == TILT or other.interval != self._effects[n].interval
+
+    def _all_of(
+        self,
+        n: int,
+        change: Change,
+        products: np.ndarray | float,
+        with_transmissions: Callable[[Change], Change],
+    ) -> Change:
         """A change of effect n's own torque, with that of its products and of all effects that see it."""
-        of_bodies, of_transmissions = self._is_of(n, "body"), self._is_of(n, "transmission")
+        of_bodies, of_links = self._is_of(n, "body"), self._is_of(n, "transmission")
         if of_bodies:
             change = _minus(change, {} if np.ndim(products) == 0 else _by_joint(-np.asarray(products)))
-        if of_transmissions or (of_bodies and self._of("transmission")):
-            change = self._transmission_change(self._with(n, instead), change)
-        if of_bodies or of_transmissions:
+        if of_links or (of_bodies and self._of("transmission")):
+            change = with_transmissions(change)
+        if of_bodies or of_links:
             for after in [self._answer(m, change) for m in self._of("torque")]:  # all see the links alone
                 change = _minus(change, {j: -x for j, x in after.items()})
         for m in self._of("signal"):
@@ -93,14 +109,29 @@ class Superposition:
         if effect_named(other.effect).is_body:
             others = [e for e in self._effects if e.effect in (TILT, OFFSET)]
             return _products(self._motion, [other, *others]) - _products(self._motion, [self._effects[n], *others])
-        return _products(self._motion, self._with(n, (other,))) - self._products
+        return _products(self._motion, self._with(n, other)) - self._products
 
-    def _transmission_change(self, effects: Sequence[NamedEffect], change: Change) -> Change:
-        """A change of the bodies' torque, with what transmissions add to it under that load and with other effects."""
-        felt = self._motion.with_load(_plus(self._carried, change))
+    def _transmission_change(self, n: int, other: NamedEffect | None, change: Change) -> Change:
+        """A change of the bodies' torque, with what transmissions add under that load and with another effect n."""
+        felt, effects = self._motion.with_load(_plus(self._carried, change)), self._with(n, other)
         giving = [e for e in effects if effect_named(e.effect).stage == "transmission"]
         now = sum((e.added(felt) for e in giving), np.zeros_like(felt.load)) + shifted_bodies(felt, effects)
         return _minus(change, _by_joint(self._transmitted - now))
+
+    def _transmission_slope(self, n: int, other: NamedEffect, change: Change) -> Change:
+        """The same to first order in the change, of an effect that becomes another."""
+        if self._is_of(n, "transmission"):
+            return _minus(change, _by_joint(-self._moved_links[n].if_other(other)))
+        felt, added = self._motion.with_load(_plus(self._carried, change)), np.zeros_like(self._carried)
+        for link in self._moved_links.values():
+            added += link.if_loaded(felt) + link.if_changed(self._effects[n], other)
+        return _minus(change, _by_joint(-added))
+
+    @cached_property
+    def _moved_links(self) -> dict[int, MovedLink]:
+        """Each transmission's link, where the transmission puts it."""
+        felt, number = self._motion.with_load(self._carried), self._of("transmission")
+        return {n: MovedLink(felt, self._effects[n], self._effects) for n in number}
 
     def _is_of(self, n: int, stage: Stage) -> bool:
         return effect_named(self._effects[n].effect).stage == stage

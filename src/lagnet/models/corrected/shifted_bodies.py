@@ -36,12 +36,18 @@ def shifted_bodies(motion: Motion, effects: Sequence[Named]) -> np.ndarray | flo
 def _between(there: Motion, here: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
     """Torque of tilts, payloads and link changes in one motion of a joint less that in another; 0 without any."""
     tilts, bodies = [e for e in effects if e.effect == TILT], moved_bodies(joint, effects)
-    change, out = change_of_gravity(here, tilts), 0.0
+    change, out = change_of_gravity(here, tilts), differing_torque(there, joint, effects)
     if bodies:
-        out = out + carried_torque(there, bodies, change) - carried_torque(here, bodies, change)
-    if tilts:
-        out = out + _held(there, change) - TILT_LAW.gravity_regressor(here) @ change
-    return out
+        out = out - carried_torque(here, bodies, change)
+    return out - TILT_LAW.gravity_regressor(here) @ change if tilts else out
+
+
+def differing_torque(motion: Motion, joint: int, effects: Sequence[Named]) -> np.ndarray | float:
+    """Torque of tilts, and of payloads and link changes that a joint moves, shape (n, dof) [N m]; 0 without any."""
+    tilts, bodies = [e for e in effects if e.effect == TILT], moved_bodies(joint, effects)
+    change = change_of_gravity(motion, tilts)
+    out = carried_torque(motion, bodies, change) if bodies else 0.0
+    return out + _held(motion, change) if tilts else out
 
 
 def _held(motion: Motion, gravity: np.ndarray) -> np.ndarray:

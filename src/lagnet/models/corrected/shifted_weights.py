@@ -37,7 +37,7 @@ def weight_slope(motion: Motion, joint: int, effects: Sequence[Named]) -> np.nda
     out = np.zeros_like(motion.load)
     for body in bodies:
         link = link_of(motion, body)
-        columns = _slope(motion, joint, _of_motion, link)
+        columns = _slope(motion, joint, body_columns, link)
         if tilts:
             columns = columns + np.tensordot(change, _slope(motion, joint, _of_weight, link), 1)
         share = np.asarray(presence(motion, body))[..., None]
@@ -55,7 +55,8 @@ def _slope(motion: Motion, joint: int, of: Callable[[Motion, int], np.ndarray], 
     return motion.remembered(("slope", of.__name__, joint, link), slope)
 
 
-def _of_motion(motion: Motion, link: int) -> np.ndarray:
+def body_columns(motion: Motion, link: int) -> np.ndarray:
+    """Torque per unit of each inertial parameter of one link, shape (n, dof, 10)."""
     return motion.bodies.link_regressor(link, motion.q, motion.v, motion.a)
 
 
