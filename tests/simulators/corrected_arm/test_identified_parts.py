@@ -35,8 +35,25 @@ def corrected(identified: IdentifiedLayer, *effects: NamedEffect) -> CorrectedMo
 HEAVIER = 0.1 * ARM.inertial_parameters() * np.array([[0.0], [1.0]])
 
 
-def test_the_engine_accelerates_as_the_corrected_model_does() -> None:
-    model = corrected(layer(HEAVIER, viscous=0.7, rotor=0.05, offset=0.4, spring=1.2))
+SPRING = (
+    NamedEffect("torque_gain", 1, {"g": 1.3}),
+    NamedEffect("torque_offset", 1, {"b": 0.2}),
+    NamedEffect("viscous_friction", 1, {"Fv": 0.5}),
+    NamedEffect("joint_spring", 1, {"k": 0.9, "q0": 0.3}),
+    NamedEffect("torque_ripple", 1, {"N": 4.0, "amplitude": 0.3, "phase": 0.5}),
+)
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        corrected(layer(HEAVIER, viscous=0.7, rotor=0.05, offset=0.4, spring=1.2)),
+        corrected(layer(HEAVIER, viscous=0.7, rotor=0.05, offset=0.4, spring=1.2, gain=0.3)),
+        corrected(layer(None, viscous=0.7, gain=0.3), *SPRING),
+    ],
+    ids=["weights", "a gain among them", "a gain beside named physics"],
+)
+def test_the_engine_accelerates_as_the_corrected_model_does(model: CorrectedModel) -> None:
     rng = np.random.default_rng(0)
     with started(model, ReplaySettings()) as (_, engine):
         for _ in range(5):

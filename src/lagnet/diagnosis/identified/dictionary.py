@@ -11,6 +11,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTerm
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
+GAIN = "gain"  # w of a recorded torque (1 + w) τ: of all joints but one where they are told against each other
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
 APART = (1, 2)  # joints from one to another that its motor also turns with: the last of a wrist turns with both others
@@ -66,6 +67,7 @@ def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:
         TermGroup("core", tuple(MotionTerm(kind, j) for kind in CORE), free=True),
         TermGroup("curve", tuple(MotionTerm(kind, j, speed) for kind in BENDS)),
         TermGroup("load", (MotionTerm("load", j),), needs_load=True),
+        TermGroup(GAIN, (MotionTerm(GAIN, j),), needs_load=True, optional=True),
         TermGroup("bristle", tuple(MotionTerm("bristle", j, max(f * reach, 1e-12)) for f in BRISTLE)),
     ]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
-from lagnet.diagnosis.identified.dictionary import TermGroup, lag_groups, term_groups
+from lagnet.diagnosis.identified.dictionary import GAIN, TermGroup, lag_groups, term_groups
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice, choose
 from lagnet.diagnosis.identified.real_inertia import (
@@ -29,6 +29,7 @@ from lagnet.models.corrected.named_effects import NamedEffect, load_before, torq
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
 NEGLIGIBLE = 0.01  # of the standard deviation of a joint's torque
 NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
+ROUNDS, SETTLED = 3, 0.005  # fits at most beside scales of the recorded torque, and their change that is none
 MOST_SAMPLES = 120_000  # at full rate: of longer recordings, pieces spread over them
 
 
@@ -66,17 +67,51 @@ def identify(problem: Problem, effects: Sequence[NamedEffect]) -> Identified | N
     segments = [fit_segment(problem, p, effects) for p in spread_evenly(problem.fit, MOST_SAMPLES)]
     first = make_design(problem, segments, [g for g in groups if not g.needs_load and not g.optional])
     ridge = fit_ridge(first, joint_equations(first), inefficiency=10.0, steps=15)
-    segments = [_with_load(s, layer_of(first, ridge.x, rest)) for s in segments]
-    without_bodies = [replace(s, regressor=None) for s in segments]
-    for pieces in (segments, without_bodies):  # the second where changed bodies harm some joint
-        found = _fitted(problem, effects, pieces, groups, rest)
-        if found is not None and not _harms(problem, pieces, found.layer):
+    loaded = _with_load(segments, layer_of(first, ridge.x, rest))
+    without_bodies = [replace(s, regressor=None) for s in loaded]
+    for bare, pieces in ((segments, loaded), (without_bodies, without_bodies)):  # where changed bodies harm some joint
+        found = _settled(problem, effects, bare, pieces, groups, rest)
+        if found is not None and not _harms(problem, _with_load(bare, found.layer), found.layer):
             return found
     return None
 
 
+def _settled(
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    bare: Sequence[FitSegment],
+    pieces: Sequence[FitSegment],
+    groups: Sequence[TermGroup],
+    rest: Rest,
+) -> Identified | None:
+    """The layer; one that scales recorded torque is fitted anew until it scales the torque of its own bodies.
+
+    Args:
+        bare: fitted motion under the load of the named bodies.
+        pieces: the same under the load of bodies as first estimated.
+    """
+    found = _fitted(problem, effects, pieces, groups, rest)
+    for _ in range(ROUNDS):
+        before = np.zeros(problem.n_dof) if found is None else _gains(found.layer, problem.n_dof)
+        if found is None or not before.any():
+            break
+        found = _fitted(problem, effects, _with_load(bare, found.layer), groups, rest)
+        if found is not None and np.max(np.abs(_gains(found.layer, problem.n_dof) - before)) < SETTLED:
+            break
+    return found
+
+
+def _gains(layer: IdentifiedLayer, n_dof: int) -> np.ndarray:
+    """Deviation of the recorded torque's scale from one at each joint, shape (dof,)."""
+    return np.array([sum(w for _, w in layer.of_kind(GAIN, j)) for j in range(n_dof)])
+
+
 def _fitted(
-    problem: Problem, effects: Sequence[NamedEffect], pieces: list[FitSegment], groups: Sequence[TermGroup], rest: Rest
+    problem: Problem,
+    effects: Sequence[NamedEffect],
+    pieces: Sequence[FitSegment],
+    groups: Sequence[TermGroup],
+    rest: Rest,
 ) -> Identified | None:
     """The layer on some equations; a joint whose rotor would be negative has speed that lags in its place."""
     late: set[int] = set()
@@ -96,7 +131,7 @@ def _fitted(
 def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> tuple[Design, Choice | None]:
     """The solution, without friction that no gear has or that is late at reversals; and the equations that it is of."""
     while (choice := choose(design)) is not None:
-        spared = _impossible_friction(design, choice)
+        spared = _impossible(design, choice)
         if not spared.size:
             spared = late_bristles(problem, pieces, design, choice)
         if not spared.size:
@@ -105,10 +140,11 @@ def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> t
     return design, choice
 
 
-def _impossible_friction(design: Design, choice: Choice) -> np.ndarray:
-    """Unknowns of friction per load that would exceed the load: that of a link that the model hardly has is nothing."""
+def _impossible(design: Design, choice: Choice) -> np.ndarray:
+    """Unknowns of friction beyond the load, that of a link that is hardly modelled, and of no or less scale."""
     weights = design.unscaled(choice.ridge.x)
-    return np.array([i for i, _ in columns_of(design, "load") if abs(weights[i]) > 1.0], dtype=int)
+    friction = [i for i, _ in columns_of(design, "load") if abs(weights[i]) > 1.0]
+    return np.array(friction + [i for i, _ in columns_of(design, GAIN) if weights[i] <= -1.0], dtype=int)
 
 
 def _harms(problem: Problem, pieces: Sequence[FitSegment], layer: IdentifiedLayer) -> bool:
@@ -134,9 +170,9 @@ def fit_segment(problem: Problem, piece: Segment, effects: Sequence[NamedEffect]
     return FitSegment(piece, regressor, load_before(motion, effects, "torque"), piece.tau - named)
 
 
-def _with_load(segment: FitSegment, layer: IdentifiedLayer) -> FitSegment:
-    """The same segment with the torque of the bodies as estimated so far."""
-    if segment.regressor is None or layer.bodies is None:
-        return segment
-    load = segment.load + segment.regressor @ layer.bodies.ravel()
-    return FitSegment(segment.piece, segment.regressor, load, segment.target)
+def _with_load(segments: Sequence[FitSegment], layer: IdentifiedLayer) -> list[FitSegment]:
+    """The same segments, under the load of the named bodies, with the torque of the bodies as estimated so far."""
+    bodies = layer.bodies
+    if bodies is None:
+        return list(segments)
+    return [s if s.regressor is None else replace(s, load=s.load + s.regressor @ bodies.ravel()) for s in segments]

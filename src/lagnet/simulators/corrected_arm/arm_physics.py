@@ -188,14 +188,14 @@ def _identified_layers(model: Any) -> list[IdentifiedLayer]:
 def _with_identified(arm: ArmPhysics, layer: IdentifiedLayer) -> ArmPhysics:
     robot, parts = changed_robot(arm.robot, layer)
     arm = replace(arm, robot=robot)
-    for term, weight in zip(layer.terms, layer.weights.tolist(), strict=True):
-        if weight == 0.0:
-            continue
-        felt = weight if term.kind == "offset" else weight / arm.drives[term.joint].gain  # weights are of the log
+    pairs = [(t, w) for t, w in zip(layer.terms, layer.weights.tolist(), strict=True) if w != 0.0]
+    for term, weight in sorted(pairs, key=lambda pair: pair[0].kind != "gain"):  # what else is weighted is of this log
+        felt = weight if term.kind == "offset" else weight / arm.drives[term.joint].gain
         part = term_part(term, felt, _least_weight(arm, term.kind, term.joint))
         parts.append(part)
         if part.alike is not None:
-            arm = ADDED[part.alike.effect](arm, part.alike.joint, part.alike.values)
+            added = _scaled_bodies if term.kind == "gain" else ADDED[part.alike.effect]
+            arm = added(arm, term.joint, part.alike.values)
     return replace(arm, identified=(*arm.identified, *parts))
 
 
@@ -207,6 +207,7 @@ def _least_weight(arm: ArmPhysics, kind: str, joint: int) -> float:
         "rotor": arm.rotor[joint],
         "load": arm.load_friction[joint],
         "spring": arm.stiffness[joint],
+        "gain": 1.0,
     }
     return -float(has[kind]) if kind in has else -np.inf
 
@@ -289,6 +290,28 @@ def _elastic(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
     stiffness = arm.elasticity.copy()
     stiffness[joint] = 1.0 / (1.0 / stiffness[joint] + 1.0 / v["K"])
     return replace(arm, elasticity=stiffness, twist_damping=_plus(arm.twist_damping, joint, v.get("D", 0.0)))
+
+
+TORQUES: dict[str, tuple[str, ...]] = {
+    "stribeck": ("extra",),
+    "ripples": ("amplitude",),
+    "couplings": ("viscous", "dry", "rotor"),
+    "bristles": ("stiffness", "friction"),
+}
+"""What of the terms at single joints is a torque, or one per unit of motion."""
+
+
+def _scaled_bodies(arm: ArmPhysics, joint: int, v: Any) -> ArmPhysics:
+    """The log scaled as regards the bodies alone: friction and springs are less by as much, and logged as before."""
+    share = np.where(np.arange(arm.n_dof) == joint, 1.0 / v["g"], 1.0)
+    own = ("viscous", "quadratic", "forward", "backward", "load_friction", "load_friction_by_power", "stiffness")
+    terms = {
+        kind: tuple(replace(t, **{f: share[t.joint] * getattr(t, f) for f in fields}) for t in getattr(arm, kind))
+        for kind, fields in TORQUES.items()
+    }
+    arm = replace(arm, **{field: share * getattr(arm, field) for field in own}, **terms)
+    drive = arm.drives[joint]
+    return _driven(arm, joint, replace(drive, gain=v["g"] * drive.gain))
 
 
 def _driven(arm: ArmPhysics, joint: int, drive: Drive) -> ArmPhysics:

@@ -1,7 +1,7 @@
 """The identified layer of a corrected model in the terms of a simulator: what named effects would add the same torque.
 
-Changed bodies and weights of viscous and dry friction, rotor, offset, load friction and spring act as the effects of
-those names do. Curves over speed and position, bristles, lag and ties between joints have no such effect, and what
+Changed bodies and weights of viscous and dry friction, rotor, offset, load friction, spring and gain act as the effects
+of those names do. Curves over speed and position, bristles, lag and ties between joints have no such effect, and what
 would make a damping, a friction or a rotor negative is no arm that moves forward.
 """
 
@@ -30,6 +30,7 @@ ALIKE: dict[str, tuple[str, Callable[[float], dict[str, float]]]] = {
     "rotor": ("rotor_inertia", lambda w: {"Ia": w}),
     "load": ("load_dependent_friction", lambda w: {"K": w}),
     "spring": ("joint_spring", lambda w: {"k": w, "q0": 0.0}),
+    "gain": ("torque_gain", lambda w: {"g": 1.0 + w}),
 }
 
 
