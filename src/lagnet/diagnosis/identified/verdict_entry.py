@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagnet.diagnosis.identified.curves import curve_over_position, friction_curve
+from lagnet.diagnosis.identified.dictionary import GAIN
 from lagnet.diagnosis.identified.fit import NORMAL_95, Identified
 from lagnet.models.corrected.motion_terms import OVER_POSITION
 from lagnet.rigid_body.base_parameters import BaseParameters, base_parameters
@@ -123,6 +124,9 @@ def _words(bodies: list, undetermined: list, own: list, ties: list, late: list[s
         parts.append(f"{len(bodies)} combinations of inertial parameters are determined and differ.")
     if own:
         parts.append(f"Friction, rotor or offset{BESIDE} at {_listed([e['joint'] for e in own])}.")
+    scaled = [e["joint"] for e in own if any(t["term"] == GAIN for t in e["terms"])]
+    if scaled:
+        parts.append(f"Against other joints, recorded torque of the bodies has another scale at {_listed(scaled)}.")
     for words, whats in ALONG.items():
         there = [e["joint"] for e in own if any(OVER_POSITION.get(t["term"], ("",))[0] in whats for t in e["terms"])]
         parts += [f"{words} {_listed(there)}."] if there else []
