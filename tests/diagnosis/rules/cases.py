@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from tests.diagnosis.posed import Posed, pose
 
 from lagnet.diagnosis.rules.candidate import Candidate
+from lagnet.diagnosis.selection.arm_search import refit_selection
 from lagnet.rigid_body.inertia import parameters_of_body
 
 JOINT = 1
@@ -208,6 +209,37 @@ def small_friction(b: Bench) -> Candidate:
     return b.of("small", lambda q, v, a, t: 6.0 * v + 0.25 * np.tanh(v / 1e-3), "viscous_friction", "coulomb_friction")
 
 
+def _beside_a_mass(b: Bench, name: str, law: Callable, effect: str) -> Candidate:
+    """An effect at the joint, and the link behind it of another mass, its centre as modelled."""
+    posed = b.posed(name, replace(b.plant(law), noise=0.01).record)
+    found = posed.select({JOINT: [effect]})
+    forms = [k for k in posed.library.reaching if posed.library.hypotheses[k].place == ("link_inertia", JOINT)]
+    mass = next(k for k in forms if posed.library.hypotheses[k].shape)
+    found = refit_selection(posed.equations, replace(found, arm_wide=(mass,)))
+    return posed.candidate(refit_selection(posed.equations, found))
+
+
+def offset_of_a_shifted_centre(b: Bench) -> Candidate:
+    """A link that is half as heavy again, its centre of mass a little off."""
+
+    def shifted(q, v, a, body):
+        own = np.asarray(b.arm.inertial_parameters())[JOINT]
+        change = 0.5 * own + 0.03 * own[0] * (np.arange(10) == 1)
+        return b.arm.link_regressor(JOINT, q, v, a) @ change
+
+    return _beside_a_mass(b, "shifted", shifted, "torque_offset")
+
+
+def offset_beside_a_heavier_link(b: Bench) -> Candidate:
+    offset = b.at(JOINT, lambda q, v, a, tau: 3.0 + 0.0 * v)
+
+    def heavier(q, v, a, body):
+        own = np.asarray(b.arm.inertial_parameters())[JOINT]
+        return b.arm.link_regressor(JOINT, q, v, a) @ (0.5 * own) + offset(q, v, a, body)
+
+    return _beside_a_mass(b, "heavier link", heavier, "torque_offset")
+
+
 Case = Callable[[Bench], Candidate]
 CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect that it rejects, not rejected in
     "canonical_form": (
@@ -215,6 +247,7 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
         "asymmetric_friction",
         uneven_friction_beside_a_spring,
     ),
+    "freed_link": (offset_of_a_shifted_centre, "torque_offset", offset_beside_a_heavier_link),
     "contained_law": (rising_friction_as_stribeck, "stribeck_friction", stribeck_friction),
     "no_holdout_gain": (friction_of_a_perfect_joint, "viscous_friction", friction_named_rightly),
     "negligible_torque": (friction_of_a_perfect_joint, "viscous_friction", friction_named_rightly),

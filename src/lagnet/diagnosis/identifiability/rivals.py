@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lagnet.diagnosis.identifiability.block_odds import held_out_errors, log10_odds
-from lagnet.diagnosis.regression.cross_validation import NormalEquations, unseen_block_errors
-from lagnet.diagnosis.selection.arm_search import Selection, least_counted, total_score, views_of
+from lagnet.diagnosis.identifiability.selection_odds import odds_over
+from lagnet.diagnosis.regression.cross_validation import NormalEquations
+from lagnet.diagnosis.selection.arm_search import Selection, total_score, views_of
 from lagnet.diagnosis.selection.joint_view import JointView, compatible
 
 SHOWN = 6  # rivals that the evidence lists
@@ -165,20 +166,8 @@ def _arm_wide_comparison(equations: NormalEquations, found: Selection, index: in
 def _arm_wide_odds(equations: NormalEquations, found: Selection, others: tuple[int, ...]) -> float:
     """log10 odds of the selection over one with other arm-wide hypotheses beside the same local ones."""
     chosen = (*others, *(i for own in found.local for i in own))
-    sigma = found.sigma(equations)
-    here, there = (_block_errors(equations, found, s, sigma) for s in (found.indices, chosen))
     own, other = (float(equations.penalties[list(s)].sum()) for s in (found.indices, chosen))
-    pieces = equations.samples / found.scales.inefficiency
-    return log10_odds(pieces, here, there, least_counted(equations.library, (), found.scales), other - own)
-
-
-def _block_errors(
-    equations: NormalEquations, found: Selection, selection: tuple[int, ...], sigma: np.ndarray
-) -> np.ndarray:
-    """Squared error of each joint in each block, raised to what counts as evidence together, shape (dof, B) [N² m²]."""
-    errors = unseen_block_errors(equations, selection, sigma)
-    whole = np.maximum(errors.sum(axis=1), 1e-300)
-    return errors * np.maximum(least_counted(equations.library, selection, found.scales) / whole, 1.0)[:, None]
+    return odds_over(equations, found, found.indices, chosen, other - own)
 
 
 def _ranked(odds: dict[str, float]) -> tuple[tuple[str, float], ...]:

@@ -131,12 +131,15 @@ class Candidate:
         return self.residual(part, ()) - self.residual(part, (effect,))
 
     def without(self, *indices: int, instead: Sequence[int] = ()) -> Candidate:
-        """The candidate without some hypotheses, with others in the place of the first, fitted again."""
-        found, first = self.selection, {*indices[:1]}
-        arm_wide = tuple(i for i in found.arm_wide if i not in indices)
-        local = tuple(
-            (*(i for i in own if i not in indices), *(instead if first & {*own} else ())) for own in found.local
-        )
+        """The candidate without some hypotheses, with others in the place of the first, fitted again.
+
+        Another form of a link that is changed already takes the place of the form it has.
+        """
+        found, first, library = self.selection, {*indices[:1]}, self.library
+        links = {library.hypotheses[k].place: k for k in instead if k in library.reaching}
+        here = tuple(k for k in instead if k not in library.reaching)
+        arm_wide = tuple(links.get(library.hypotheses[i].place, i) for i in found.arm_wide if i not in indices)
+        local = tuple((*(i for i in own if i not in indices), *(here if first & {*own} else ())) for own in found.local)
         start = self.refit.effects if "refit" in self.__dict__ else self.start
         selection = refit_selection(self.equations, replace(found, arm_wide=arm_wide, local=local))
         return replace(self, selection=selection, start=start)

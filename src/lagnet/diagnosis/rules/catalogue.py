@@ -5,6 +5,7 @@ from __future__ import annotations
 from lagnet.diagnosis.rules.canonical_form import CanonicalForm
 from lagnet.diagnosis.rules.contained_law import ContainedLaw
 from lagnet.diagnosis.rules.distant_centre import DistantCentre
+from lagnet.diagnosis.rules.freed_link import FreedLink
 from lagnet.diagnosis.rules.gain_beside_free_links import GainBesideFreeLinks
 from lagnet.diagnosis.rules.impossible_density import ImpossibleDensity
 from lagnet.diagnosis.rules.lack_of_fit import LackOfFit
@@ -19,6 +20,7 @@ from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
 
 RULES: tuple[RejectionRule, ...] = (
     CanonicalForm(),
+    FreedLink(),
     ContainedLaw(),
     NoHoldoutGain(),
     NegligibleTorque(),
