@@ -37,7 +37,7 @@ class DecisionLimits:
     least_ratio: float = 1.02
     tie_odds: float = 1.3
     same_error: float = 1e-3
-    most_names: int = 4
+    most_names: int = 3
     above_noise: float = 1.25
 
     def penalty(self, coefficients: int, shapes: int) -> float:
