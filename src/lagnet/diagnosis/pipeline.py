@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
 from lagnet.diagnosis.identifiability.first_joint_zero import tie_tilt_and_first_zero
 from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
 from lagnet.diagnosis.identifiability.unexcited_rivals import with_unexcited_rivals
+from lagnet.diagnosis.identified.known_layers import KnownLayers
 from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.block_gram import collect_block_grams
@@ -46,6 +47,7 @@ class Inputs:
         noise: shape (dof,), noise floor [N m].
         rules: that every named effect must pass.
         seed: of everything random.
+        layers: identified layers of all runs on these recordings.
     """
 
     fit: Conditioned
@@ -53,6 +55,7 @@ class Inputs:
     noise: np.ndarray
     rules: Sequence[RejectionRule]
     seed: int
+    layers: KnownLayers = field(default_factory=KnownLayers)
 
 
 def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
@@ -61,7 +64,7 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     unseen = sum_normal_equations(
         equations.library, collect_block_grams(problem, equations.library, problem.holdout), problem.limits
     )
-    first = Candidate(problem, equations, unseen, found, given.noise, given.seed)
+    first = Candidate(problem, equations, unseen, found, given.noise, given.seed, layers=given.layers)
     left = apply_rules([r for r in given.rules if not r.after_refit], first)
     candidate, rejected = left.candidate, left.rejected
     if problem.given is None:
@@ -96,6 +99,7 @@ def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
         rejected,
         ambiguous=tuple(ambiguous.values()),
         supposed=supposed,
+        layers=given.layers,
     )
 
 

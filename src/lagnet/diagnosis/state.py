@@ -10,7 +10,8 @@ import numpy as np
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.identifiability.ambiguity import AmbiguousCause
 from lagnet.diagnosis.identifiability.rivals import Comparison
-from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.identified.fit import Identified
+from lagnet.diagnosis.identified.known_layers import KnownLayers
 from lagnet.diagnosis.problem.intervals import EventInterval, lasting, set_aside
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.cross_validation import NormalEquations
@@ -54,7 +55,7 @@ class DiagnosisState:
         ambiguous: causes that too many names explain equally.
         supposed: the persistent effects with the likeliest name of every ambiguous cause; empty: those of `refit`.
         judged: the problem with free links beside which the names were judged; None: `problem`.
-        layers: the identified layer by what it stands beside, computed once; shared by a state and its variants.
+        layers: identified layers, computed once; shared by all runs on the same recordings.
     """
 
     problem: Problem
@@ -75,7 +76,7 @@ class DiagnosisState:
     ambiguous: tuple[AmbiguousCause, ...] = ()
     supposed: tuple[NamedEffect, ...] = ()
     judged: Problem | None = None
-    layers: dict = field(default_factory=dict, repr=False)
+    layers: KnownLayers = field(default_factory=KnownLayers)
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
@@ -115,20 +116,12 @@ class DiagnosisState:
     @property
     def identified(self) -> Identified | None:
         """What the fitted recordings determine beside the named effects, whatever its cause; None where nothing."""
-        return self._identified_beside(self.events, self.effects)
+        return self.layers.beside(lasting(self.problem, self.events), self.effects)
 
     @property
     def identified_alone(self) -> Identified | None:
         """What the fitted recordings determine in the place of all names; None where nothing."""
-        return self._identified_beside((), ())
-
-    def _identified_beside(
-        self, events: tuple[EventInterval, ...], effects: tuple[NamedEffect, ...]
-    ) -> Identified | None:
-        key = self.problem, events, tuple(e.key for e in effects)
-        if key not in self.layers:
-            self.layers[key] = identify(lasting(self.problem, events), effects)
-        return self.layers[key]
+        return self.layers.beside(self.problem, ())
 
     @property
     def sensor_noise(self) -> np.ndarray:

@@ -11,7 +11,8 @@ import numpy as np
 
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.identified.borne_out import powers_beside
-from lagnet.diagnosis.identified.fit import Identified, identify
+from lagnet.diagnosis.identified.fit import Identified
+from lagnet.diagnosis.identified.known_layers import KnownLayers
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import left_by
 from lagnet.diagnosis.regression.cross_validation import NormalEquations
@@ -37,7 +38,8 @@ class Candidate:
         seed: of everything random.
         start: effects of the refit before, from which the next one starts.
         residuals: r by part and effects, computed once; shared by all candidates of one diagnosis.
-        layers: the identified layer without names and what it leaves, computed once; shared likewise.
+        layers: identified layers, computed once; shared by all runs on the same recordings.
+        left: what the one without names leaves, computed once; shared by all candidates.
     """
 
     problem: Problem
@@ -48,7 +50,8 @@ class Candidate:
     seed: int
     start: tuple[NamedEffect, ...] = ()
     residuals: dict = field(default_factory=dict, repr=False)
-    layers: dict = field(default_factory=dict, repr=False)
+    layers: KnownLayers = field(default_factory=KnownLayers)
+    left: dict = field(default_factory=dict, repr=False)
 
     @property
     def limits(self) -> DecisionLimits:
@@ -90,20 +93,18 @@ class Candidate:
     @property
     def identified(self) -> Identified | None:
         """What the fitted recordings determine where no effect is named; None where that predicts nothing."""
-        if "found" not in self.layers:
-            self.layers["found"] = identify(self.problem, ())
-        return self.layers["found"]
+        return self.layers.beside(self.problem, ())
 
     @property
     def left_by_layer(self) -> np.ndarray:
         """Share of each joint's held-out mismatch beyond the noise that the layer leaves, shape (dof,); 1 for none."""
         if self.identified is None:
             return np.ones(self.problem.n_dof)
-        if "left" not in self.layers:
+        if "share" not in self.left:
             before, after = powers_beside(self.problem, self.segments("holdout"), (), self.identified.layer)
             power = self.noise**2
-            self.layers["left"] = np.maximum(after - power, 0.0) / np.maximum(before - power, 1e-300)
-        return self.layers["left"]
+            self.left["share"] = np.maximum(after - power, 0.0) / np.maximum(before - power, 1e-300)
+        return self.left["share"]
 
     def segments(self, part: Part) -> tuple[Segment, ...]:
         """The fitted or the held-out segments."""
