@@ -209,17 +209,17 @@ def small_friction(b: Bench) -> Candidate:
     return b.of("small", lambda q, v, a, t: 6.0 * v + 0.25 * np.tanh(v / 1e-3), "viscous_friction", "coulomb_friction")
 
 
-def _beside_a_mass(b: Bench, name: str, law: Callable, effect: str) -> Candidate:
-    """An effect at the joint, and the link behind it of another mass, its centre as modelled."""
+def _beside_a_mass(b: Bench, name: str, law: Callable, joint: int = JOINT) -> Candidate:
+    """An offset at a joint, and the link behind the joint of another mass, its centre as modelled."""
     posed = b.posed(name, replace(b.plant(law), noise=0.01).record)
-    found = posed.select({JOINT: [effect]})
+    found = posed.select({joint: ["torque_offset"]})
     forms = [k for k in posed.library.reaching if posed.library.hypotheses[k].place == ("link_inertia", JOINT)]
     mass = next(k for k in forms if posed.library.hypotheses[k].shape)
     found = refit_selection(posed.equations, replace(found, arm_wide=(mass,)))
     return posed.candidate(refit_selection(posed.equations, found))
 
 
-def offset_of_a_shifted_centre(b: Bench) -> Candidate:
+def offset_of_a_shifted_centre(b: Bench, joint: int = JOINT) -> Candidate:
     """A link that is half as heavy again, its centre of mass a little off."""
 
     def shifted(q, v, a, body):
@@ -227,7 +227,7 @@ def offset_of_a_shifted_centre(b: Bench) -> Candidate:
         change = 0.5 * own + 0.03 * own[0] * (np.arange(10) == 1)
         return b.arm.link_regressor(JOINT, q, v, a) @ change
 
-    return _beside_a_mass(b, "shifted", shifted, "torque_offset")
+    return _beside_a_mass(b, "shifted", shifted, joint)
 
 
 def offset_beside_a_heavier_link(b: Bench) -> Candidate:
@@ -237,7 +237,7 @@ def offset_beside_a_heavier_link(b: Bench) -> Candidate:
         own = np.asarray(b.arm.inertial_parameters())[JOINT]
         return b.arm.link_regressor(JOINT, q, v, a) @ (0.5 * own) + offset(q, v, a, body)
 
-    return _beside_a_mass(b, "heavier link", heavier, "torque_offset")
+    return _beside_a_mass(b, "heavier link", heavier)
 
 
 Case = Callable[[Bench], Candidate]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tests.diagnosis.rules.cases import JOINT, Bench, offset_beside_a_heavier_link, offset_of_a_shifted_centre
 
 from lagnet.diagnosis.rules.apply import apply_rules
@@ -17,11 +19,13 @@ def test_the_link_is_freed_where_its_effect_goes(arm, plant, at) -> None:
 
 
 def test_an_effect_at_a_joint_behind_the_link_is_not_asked(arm, plant, at) -> None:
-    candidate = offset_of_a_shifted_centre(Bench(arm, plant, at, {}))
-    assert {r.joint for r in FreedLink().rejected(candidate)} <= set(range(JOINT + 1))
+    candidate = offset_of_a_shifted_centre(Bench(arm, plant, at, {}), JOINT + 1)
+    assert candidate.selection.local[JOINT + 1]
+    assert FreedLink().rejected(candidate) == ()
 
 
-def test_a_stricter_limit_decides(arm, plant, at) -> None:
+def test_the_limit_of_a_tie_decides(arm, plant, at) -> None:
     candidate = offset_beside_a_heavier_link(Bench(arm, plant, at, {}))
     assert not FreedLink().rejected(candidate)
-    assert FreedLink(least_odds=99.5).rejected(candidate)
+    strict = replace(candidate.problem, limits=replace(candidate.limits, tie_odds=99.5))
+    assert FreedLink().rejected(replace(candidate, problem=strict))

@@ -22,8 +22,7 @@ from lagnet.effects.inertia.link_inertia import is_mass_alone
 class FreedLink(RejectionRule):
     """log10 odds of an effect beside a link's mass over all ten numbers of that link without it, complexity aside.
 
-    Args:
-        least_odds: of an effect that stands.
+    The least odds are the shared limit of a tie.
     """
 
     name: ClassVar[str] = "freed_link"
@@ -31,17 +30,15 @@ class FreedLink(RejectionRule):
     source: ClassVar[str] = "vuong1989"
     after_refit: ClassVar[bool] = False
 
-    least_odds: float = 1.3
-
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
-        rejections = []
+        rejections, least = [], candidate.limits.tie_odds
         for mass, free in _masses(candidate):
             place = candidate.library.hypotheses[mass].joint or 0
             for index in (i for own in candidate.selection.local[: place + 1] for i in own):
                 odds = _odds(candidate, index, mass, free)
-                if odds < self.least_odds:
+                if odds < least:
                     detail = f"the centre and inertia of link {place + 1} explain it as well: log10 odds {odds:.2g}"
-                    rejections.append(self.rejection(candidate, index, odds, self.least_odds, detail, (free,)))
+                    rejections.append(self.rejection(candidate, index, odds, least, detail, (free,)))
         return tuple(sorted(rejections, key=lambda r: r.value))
 
 
