@@ -24,7 +24,7 @@ from validation.real_arms.splits import splits
 Posed = tuple[Any, Sequence[Recording], Sequence[Recording] | None]
 """Nominal model, fitted and held-out recordings; None: the last fifth of each."""
 SECONDS = 22.0  # of a run of the other simulator
-MADE_ON, FRESH = (2, 3), 5  # seeds of the other simulator: those that `reversal_delay` was made on, and a fresh one
+MADE_ON, FRESH = (2, 3), 5  # seeds of the other simulator: those that `reversals_only` was made on, and a fresh one
 UNLISTED_MADE_ON, UNLISTED_FRESH = (101, 102, 103), 51
 LATE = (0.3, 0.6)  # [s]; delays up to 0.25 s are searched
 FIRST_FAR = 200  # the study of far models has the numbers below 60

@@ -257,7 +257,7 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
     "impossible_density": (mass_in_one_point, "link_inertia", tool_on_a_link),
     "distant_centre": (link_with_its_mass_far_away, "link_inertia", tool_on_a_link),
     "gain_beside_free_links": (gain_of_heavier_links, "torque_gain", gain_of_a_sensor),
-    "reversal_delay": (early_friction_as_delay, "time_delay", delay_beside_friction),
+    "reversals_only": (early_friction_as_delay, "time_delay", delay_beside_friction),
     "value_at_bound": (later_than_is_searched, "time_delay", late_by_less),
     "not_significant": (gain_beside_another_law, "torque_gain", small_friction),
 }

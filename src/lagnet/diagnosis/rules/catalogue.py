@@ -13,7 +13,7 @@ from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
 from lagnet.diagnosis.rules.no_holdout_gain import NoHoldoutGain
 from lagnet.diagnosis.rules.not_significant import NotSignificant
-from lagnet.diagnosis.rules.reversal_delay import ReversalDelay
+from lagnet.diagnosis.rules.reversals_only import ReversalsOnly
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
 from lagnet.diagnosis.rules.value_at_bound import ValueAtBound
@@ -30,7 +30,7 @@ RULES: tuple[RejectionRule, ...] = (
     ImpossibleDensity(),
     DistantCentre(),
     GainBesideFreeLinks(),
-    ReversalDelay(),
+    ReversalsOnly(),
     ValueAtBound(),
     NotSignificant(),
 )
