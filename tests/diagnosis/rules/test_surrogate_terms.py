@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from tests.diagnosis.rules.cases import Bench
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.diagnosis.rules import surrogate_terms
 from lagnet.diagnosis.rules.catalogue import RULES
+from lagnet.effects.bristle import bristle
 from lagnet.recordings.conditioning.condition import condition
 from lagnet.rigid_body.random_arm import random_arm
 
@@ -103,3 +107,25 @@ def test_friction_that_changes_along_the_path_is_among_the_plain_terms(table) ->
         return (1.0 + 0.6 * np.sin(3.0 * p.q[:, own] + 0.4)) * np.tanh(p.v[:, own] / problem.slow[own])
 
     assert left(worn) < 0.01
+
+
+@pytest.fixture
+def bristles(arm, plant, at):
+    """Presliding friction fitted to a law of some joint."""
+    size = 0.3 * plant().usual_torque()[1]
+
+    def of(name: str, law):
+        real = replace(plant(at(1, lambda q, v, a, body: size * law(q))), noise=0.001)
+        return Bench(arm, plant, at, {}).candidate(name, real.record, ["presliding_hysteresis"])
+
+    return of
+
+
+def test_a_stiffening_spring_is_no_presliding_friction(bristles) -> None:
+    hard = bristles("stiffening", lambda q: q**3)
+    assert {r.effect for r in surrogate_terms.SurrogateTerms().rejected(hard)} == {"presliding_hysteresis"}
+
+
+def test_presliding_friction_keeps_its_name(bristles) -> None:
+    sticking = bristles("bristles", lambda q: bristle(q, 0.1))
+    assert surrogate_terms.SurrogateTerms().rejected(sticking) == ()

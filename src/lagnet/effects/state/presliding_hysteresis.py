@@ -29,6 +29,7 @@ class PreslidingHysteresis(StateEffect):
     shown_by = "slow reversals and small back-and-forth motions"
     confused_with = ("backlash", "stribeck_friction", "coulomb_friction")
     contains = ("coulomb_friction",)
+    plain_terms = 2
     absent = (("Fc", 0.0),)
     is_friction = True
     is_dry_friction = True
