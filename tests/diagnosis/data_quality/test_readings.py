@@ -46,6 +46,20 @@ def test_the_log_of_another_robot_is_told(other, ur5) -> None:
     assert found.mend.startswith(f"give --robot {other}")
 
 
+@pytest.mark.parametrize("mass", [0.0, 1.0])
+def test_a_model_without_masses_is_of_no_other_robot(mass, ur5, recordings) -> None:
+    """Kinematics of the arm that was recorded, and links without mass or of a kilogram each."""
+    links = np.zeros((ur5.n_dof, 10))
+    links[:, 0], links[:, [4, 6, 9]] = mass, 0.01 * mass
+    assert not [f for f in inspect_quality(recordings, ur5.with_inertial_parameters(links)) if f.refused]
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_rough_model_of_the_arm_is_of_no_other_robot(seed, ur5, recordings) -> None:
+    guessed = ur5.inertial_parameters() * np.random.default_rng(seed).uniform(0.3, 2.5, (ur5.n_dof, 1))
+    assert not [f for f in inspect_quality(recordings, ur5.with_inertial_parameters(guessed)) if f.refused]
+
+
 def test_an_arm_with_much_that_the_model_lacks_is_no_bad_data(ur5) -> None:
     """A heavy payload, strong friction: physics, and not another order, clock or robot."""
     settings = SoundSettings(viscous=1.5, coulomb=1.0)
