@@ -12,6 +12,7 @@ from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTer
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 GAIN = "gain"  # w of a recorded torque (1 + w) τ: of all joints but one where they are told against each other
+OF_LOAD = ("load", GAIN)  # kinds of functions of the torque of the bodies
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
 APART = (1, 2)  # joints from one to another that its motor also turns with: the last of a wrist turns with both others
@@ -27,7 +28,6 @@ class TermGroup:
         name: of the group.
         terms: the functions.
         free: whether the weights have no prior.
-        needs_load: whether they are functions of the torque of the bodies, which must be estimated first.
         pair: the joints that it couples; None for a group of one joint.
         optional: whether it is used only where it predicts held-out motion better, a pair where far better.
     """
@@ -35,9 +35,13 @@ class TermGroup:
     name: str
     terms: tuple[MotionTerm, ...]
     free: bool = False
-    needs_load: bool = False
     pair: tuple[int, int] | None = None
     optional: bool = False
+
+    @property
+    def needs_load(self) -> bool:
+        """Whether they are functions of the torque of the bodies, which must be estimated first."""
+        return self.terms[0].kind in OF_LOAD
 
     @property
     def joint(self) -> int | None:
@@ -66,8 +70,8 @@ def _of_joint(j: int, speed: float, reach: float) -> list[TermGroup]:
     return [
         TermGroup("core", tuple(MotionTerm(kind, j) for kind in CORE), free=True),
         TermGroup("curve", tuple(MotionTerm(kind, j, speed) for kind in BENDS)),
-        TermGroup("load", (MotionTerm("load", j),), needs_load=True),
-        TermGroup(GAIN, (MotionTerm(GAIN, j),), needs_load=True, optional=True),
+        TermGroup("load", (MotionTerm("load", j),)),
+        TermGroup(GAIN, (MotionTerm(GAIN, j),), optional=True),
         TermGroup("bristle", tuple(MotionTerm("bristle", j, max(f * reach, 1e-12)) for f in BRISTLE)),
     ]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
-from lagnet.diagnosis.identified.dictionary import GAIN, TermGroup, lag_groups, term_groups
+from lagnet.diagnosis.identified.dictionary import GAIN, OF_LOAD, TermGroup, lag_groups, term_groups
 from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
 from lagnet.diagnosis.identified.folds import Choice, choose
 from lagnet.diagnosis.identified.real_inertia import (
@@ -29,7 +29,7 @@ from lagnet.models.corrected.named_effects import NamedEffect, load_before, torq
 HARMFUL = 1.2  # times the squared error of a joint without the layer, all samples counted
 NEGLIGIBLE = 0.01  # of the standard deviation of a joint's torque
 NORMAL_95 = 1.96  # half width of a 95 % interval in standard deviations
-ROUNDS, SETTLED = 3, 0.005  # fits at most beside scales of the recorded torque, and their change that is none
+ROUNDS, SETTLED = 6, 0.02  # fits at most, and share of r² up to which torque of the load is that of its own bodies
 MOST_SAMPLES = 120_000  # at full rate: of longer recordings, pieces spread over them
 
 
@@ -84,26 +84,35 @@ def _settled(
     groups: Sequence[TermGroup],
     rest: Rest,
 ) -> Identified | None:
-    """The layer; one that scales recorded torque is fitted anew until it scales the torque of its own bodies.
+    """The layer, fitted anew until its friction and scales of recorded torque are those under its own bodies' load.
 
     Args:
         bare: fitted motion under the load of the named bodies.
         pieces: the same under the load of bodies as first estimated.
     """
-    found = _fitted(problem, effects, pieces, groups, rest)
+    tried = []
     for _ in range(ROUNDS):
-        before = np.zeros(problem.n_dof) if found is None else _gains(found.layer, problem.n_dof)
-        if found is None or not before.any():
+        found = _fitted(problem, effects, pieces, groups, rest)
+        if found is None:
             break
-        found = _fitted(problem, effects, _with_load(bare, found.layer), groups, rest)
-        if found is not None and np.max(np.abs(_gains(found.layer, problem.n_dof) - before)) < SETTLED:
+        own = _with_load(bare, found.layer)
+        tried.append((_unsettled(problem, found, pieces, own), found))
+        if tried[-1][0] <= SETTLED:
             break
-    return found
+        pieces = own
+    return min(tried, key=lambda one: one[0])[1] if tried else None
 
 
-def _gains(layer: IdentifiedLayer, n_dof: int) -> np.ndarray:
-    """Deviation of the recorded torque's scale from one at each joint, shape (dof,)."""
-    return np.array([sum(w for _, w in layer.of_kind(GAIN, j)) for j in range(n_dof)])
+def _unsettled(problem: Problem, found: Identified, fitted: Sequence[FitSegment], own: Sequence[FitSegment]) -> float:
+    """Largest share of a joint's r² by which torque of the load differs between that of the fit and of its bodies."""
+    weights = np.where([t.kind in OF_LOAD for t in found.layer.terms], found.layer.weights, 0.0)
+    loaded, differs = replace(found.layer, weights=weights), np.zeros(problem.n_dof)
+    for before, after in zip(fitted, own, strict=True) if weights.any() else ():
+        motion = after.piece.motion(problem)
+        change = loaded.term_torque(motion, after.load) - loaded.term_torque(motion, before.load)
+        differs += np.sum(problem.reduce(after.piece, change) ** 2 * after.piece.counts, axis=0)
+    count = np.maximum(1, sum(s.piece.counts.sum(axis=0) for s in own))
+    return float(np.max(differs / count / np.maximum(found.choice.ridge.variance, 1e-300)))
 
 
 def _fitted(
