@@ -18,6 +18,7 @@ from validation.real_arms.arms import EMPS, TX40, UR10E
 from validation.real_arms.joint_states import read_joint_states
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
+from lagnet.effects.catalogue import effect_named
 from lagnet.models.files.loading import load_any
 from lagnet.recordings.loading.load import load_recording
 from lagnet.recordings.recording import Recording
@@ -68,8 +69,13 @@ def _cut(recording: Recording) -> tuple[list[Recording], list[Recording]]:
 
 
 def parameters(result: Diagnosis) -> Parameters:
-    """(value, low, high) by effect, joint and parameter."""
-    return {(e.effect, e.joint or "arm", p.name): (p.value, *p.ci95) for e in result.effects for p in e.parameters}
+    """(value, low, high) by effect, joint and parameter, as far as the effect says it: a mass alone says no centre."""
+    return {
+        (e.effect, e.joint or "arm", p.name): (p.value, *p.ci95)
+        for e in result.effects
+        for p in e.parameters
+        if p.name in effect_named(e.effect).told({q.name: q.value for q in e.parameters})
+    }
 
 
 def study(case: Halves) -> dict[str, Any]:
