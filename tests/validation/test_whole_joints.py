@@ -28,7 +28,8 @@ def test_what_is_beside_the_bodies_is_the_friction_rotor_strut_and_disturbance(p
     assert omega[np.argmax(np.abs(np.fft.rfft(quiet.q[:, 0] - quiet.q[:, 0].mean())))] <= 0.6  # [Hz]
     v = np.gradient(quiet.q, quiet.time, axis=0)
     a = np.gradient(v, quiet.time, axis=0)
-    left = quiet.tau - plant.true.inverse_dynamics(quiet.q, v, a)
+    body = plant.true.inverse_dynamics(quiet.q, v, a)
+    left = quiet.tau - body - plant.per_load * np.abs(body) * np.sign(v)
     for joint in (0, 2):
         beyond = np.abs(v[:, joint]) > 0.3  # Stribeck's excess is gone
         columns = np.column_stack([np.sign(v[:, joint]), np.ones(n), v[:, joint], a[:, joint]])[beyond]

@@ -1,8 +1,9 @@
 """Arms whose model knows hardly anything of their links, and on which every joint has all that real joints have.
 
 Torque is that of the true bodies by Newton–Euler, with all else written out here: dry friction that differs by
-direction, Stribeck and viscous friction, a rotor and a ripple at every joint, a gas strut at the second, and a slow
-disturbance that nothing predicts. The model has one mass for all links, as placeholders in a URDF have.
+direction and grows with the load, Stribeck and viscous friction, a rotor and a ripple at every joint, a gas strut at
+the second, and a slow disturbance that nothing predicts. The model has one mass for all links, as placeholders in a
+URDF have.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from validation.far_models.motion import harmonics
 ENCODER, NOISE = 1e-5, 0.01  # [rad] or [m]; of each joint's usual torque
 SHARP, STRIBECK = 1e-4, 0.1  # [rad/s] over which dry friction changes its direction, and by which its excess falls off
 WAVES, RIPPLE = 17.0, 0.05  # of a ripple a radian, and its size over dry friction
+PER_LOAD = 0.12  # largest friction that grows with the load, over the load: gears of 88 to 100 % efficiency
 MEMORY, SLOW = 0.95, 0.15  # of a disturbance from sample to sample, and the size of its steps, over those of the torque
 KINDS = (("revolute",), ("revolute", "revolute", "prismatic"))
 MASSES = (1.0, 0.2)  # [kg] of every link of the model, in turn
@@ -33,6 +35,7 @@ class WholeJoints:
     Args:
         nominal, true: robots of one kinematics.
         dry, viscous, stribeck, rotor: shapes (2, dof), (dof,), (dof,) and (dof,) of what the model lacks.
+        per_load: shape (dof,), further dry friction over the torque of the bodies.
         strut: largest torque of the gas strut, about [N m].
     """
 
@@ -42,21 +45,23 @@ class WholeJoints:
     viscous: np.ndarray
     stribeck: np.ndarray
     rotor: np.ndarray
+    per_load: np.ndarray
     strut: float
 
     def record(self, seed: int) -> Recording:
         """One motion with what an encoder and a torque sensor write down of it."""
         rng = np.random.default_rng(seed)
         time, q, v, a = harmonics(rng, self.true.n_dof)
-        tau = self.true.inverse_dynamics(q, v, a) + self._beside_bodies(q, v, a)
+        body = self.true.inverse_dynamics(q, v, a)
+        tau = body + self._beside_bodies(q, v, a, self.per_load * np.abs(body))
         usual = np.std(tau, axis=0)
         tau = tau + usual * (NOISE * rng.standard_normal(tau.shape) + SLOW * _slow(rng.standard_normal(tau.shape)))
         return Recording(time, q + ENCODER * rng.standard_normal(q.shape), tau, self.true.joints)
 
-    def _beside_bodies(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        excess = self.stribeck * np.exp(-((v / STRIBECK) ** 2))
+    def _beside_bodies(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, rub: np.ndarray) -> np.ndarray:
+        rub = rub + self.stribeck * np.exp(-((v / STRIBECK) ** 2))
         up, down = (
-            np.clip(sign * v / SHARP, 0.0, 1.0) * (dry + excess) for sign, dry in zip((1, -1), self.dry, strict=True)
+            np.clip(sign * v / SHARP, 0.0, 1.0) * (dry + rub) for sign, dry in zip((1, -1), self.dry, strict=True)
         )
         ripple = RIPPLE * self.dry.mean(axis=0) * np.sin(WAVES * q)
         out = up - down + self.viscous * v + self.rotor * a + ripple
@@ -84,5 +89,6 @@ def draw(seed: int) -> WholeJoints:
         size * rng.uniform(0.15, 0.5, n),
         size * rng.uniform(0.0, 0.5, n),
         size * rng.uniform(0.0, 0.05, n),
+        rng.uniform(0.0, PER_LOAD, n),
         float(usual[1] * rng.uniform(0.0, 1.0)),
     )

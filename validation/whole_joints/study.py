@@ -26,7 +26,9 @@ LAYERS = ("nominal", "named", "identified", "full")
 TOLD = ("joints", "worse", "wrong_names", "seconds")  # of each plant, as it is done
 REFUSED = {"worse": 0, "names": [], "wrong_names": [], "seconds": None}
 WORSE = 1.1  # times the error of least squares
-FRICTION = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "viscous_friction"}
+FRICTION = {
+    "coulomb_friction", "asymmetric_friction", "stribeck_friction", "viscous_friction", "load_dependent_friction",
+}  # fmt: skip
 TRUE = FRICTION | {"torque_offset", "rotor_inertia", "torque_ripple", "link_inertia", "payload"}  # at every joint
 
 
