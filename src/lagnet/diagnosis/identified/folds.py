@@ -16,9 +16,10 @@ FOLDS = 6
 GUARD = 3  # samples left out on both sides of a block: the length of the filter's response
 INEFFICIENCIES = (3.0, 10.0, 20.0, 40.0)  # candidates for the statistical inefficiency
 COUPLED = 0.5  # largest held-out error of a joint with a coupling over that without
-MUCH = 0.005  # held-out error over the power of the target, above which functions of the joint's position are tried
-BETTER = 0.5  # largest held-out error with these over that without, in the product over all joints
-SCREENED = 0.6  # of the joint's fitted error, all else held fixed: what lowers it by less is not validated
+MUCH = 0.005  # held-out error over the variance of the target, above which functions of the joint's position are tried
+BETTER = 0.8  # largest held-out error with these over that without, in the product over all joints
+SCREENED = 0.8  # of the joint's fitted error, all else held fixed: what lowers it by less is not validated
+SCALED = 0.5  # largest held-out error with a scale of recorded torque over that without, in the product over all joints
 MAYBE = 0.8  # of the fitted error: what lowers this by less does not halve that of held-out blocks
 IDLE = 0.98  # held-out error over the power of the target, above which a joint needs no terms
 FIRST, STEPS = 25, 5  # steps of the evidence's fixed point, initially and from a fit nearby
@@ -122,7 +123,7 @@ def _scales(rows: _Rows, best: Choice, needed: frozenset[int]) -> frozenset[int]
         likely = [i for i in gains - found if np.prod(_fitted_ratio(rows, current, frozenset({i}))) < MAYBE]
         tried = {i: _validated(rows, best.inefficiency, current.excluded - {i}) for i in likely}
         most = min(tried, key=lambda i: tried[i].score, default=None)
-        if most is None or tried[most].score > current.score + np.log(BETTER):
+        if most is None or tried[most].score > current.score + np.log(SCALED):
             break
         found, current = found | {most}, tried[most]
     return found
@@ -131,9 +132,18 @@ def _scales(rows: _Rows, best: Choice, needed: frozenset[int]) -> frozenset[int]
 def _is_needed(rows: _Rows, best: Choice, index: int) -> bool:
     """Whether held-out blocks are predicted better with an optional group of one joint."""
     joint = rows.design.groups[index].joint
-    if joint is None or best.nmse[joint] < MUCH or _screened_ratio(rows, best, joint, index) > SCREENED:
+    if joint is None or best.nmse[joint] < MUCH * _variance_share(rows, joint):
+        return False
+    if _screened_ratio(rows, best, joint, index) > SCREENED:
         return False
     return _validated(rows, best.inefficiency, best.excluded - {index}).score < best.score + float(np.log(BETTER))
+
+
+def _variance_share(rows: _Rows, joint: int) -> float:
+    """Variance over power of a joint's target: an offset explains the rest."""
+    own, power = rows.design.joints[joint], rows.total[joint].power
+    target = own.target[own.valid]
+    return float(np.sum((target - target.mean()) ** 2)) / power if power > 0.0 else 1.0
 
 
 def _screened_ratio(rows: _Rows, best: Choice, joint: int, index: int) -> float:
