@@ -209,6 +209,21 @@ def small_friction(b: Bench) -> Candidate:
     return b.of("small", lambda q, v, a, t: 6.0 * v + 0.25 * np.tanh(v / 1e-3), "viscous_friction", "coulomb_friction")
 
 
+def _at_half_a_hertz(a: np.ndarray) -> np.ndarray:
+    """The part of an acceleration, at 100 Hz, that is one sinusoid of time: what a joint that is shaken follows."""
+    angle = 2.0 * np.pi * 0.5 * np.arange(a.size) / 100.0
+    waves = np.column_stack([np.sin(angle), np.cos(angle)])
+    return waves @ np.linalg.lstsq(waves, a)[0]
+
+
+def hum_as_rotor(b: Bench) -> Candidate:
+    return b.of("hum", lambda q, v, a, t: 4.0 * _at_half_a_hertz(a), "rotor_inertia")
+
+
+def rotor_beside_unlisted_drag(b: Bench) -> Candidate:
+    return b.of("rotor and drag", lambda q, v, a, t: 2.0 * a + 3.0 * v**3, "rotor_inertia")
+
+
 def _beside_a_mass(b: Bench, name: str, law: Callable, joint: int = JOINT) -> Candidate:
     """An offset at a joint, and the link behind the joint of another mass, its centre as modelled."""
     posed = b.posed(name, replace(b.plant(law), noise=0.01).record)
@@ -257,6 +272,7 @@ CASES: Mapping[str, tuple[Case, str, Case]] = {  # rule → rejected in, effect 
     "impossible_density": (mass_in_one_point, "link_inertia", tool_on_a_link),
     "distant_centre": (link_with_its_mass_far_away, "link_inertia", tool_on_a_link),
     "gain_beside_free_links": (gain_of_heavier_links, "torque_gain", gain_of_a_sensor),
+    "periodic_disturbance": (hum_as_rotor, "rotor_inertia", rotor_beside_unlisted_drag),
     "reversals_only": (early_friction_as_delay, "time_delay", delay_beside_friction),
     "value_at_bound": (later_than_is_searched, "time_delay", late_by_less),
     "not_significant": (gain_beside_another_law, "torque_gain", small_friction),

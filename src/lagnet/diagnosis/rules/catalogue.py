@@ -13,6 +13,7 @@ from lagnet.diagnosis.rules.measured_torque_leakage import MeasuredTorqueLeakage
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque
 from lagnet.diagnosis.rules.no_holdout_gain import NoHoldoutGain
 from lagnet.diagnosis.rules.not_significant import NotSignificant
+from lagnet.diagnosis.rules.periodic_disturbance import PeriodicDisturbance
 from lagnet.diagnosis.rules.reversals_only import ReversalsOnly
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
@@ -27,6 +28,7 @@ RULES: tuple[RejectionRule, ...] = (
     MeasuredTorqueLeakage(),
     LackOfFit(),
     SurrogateTerms(),
+    PeriodicDisturbance(),
     ImpossibleDensity(),
     DistantCentre(),
     GainBesideFreeLinks(),

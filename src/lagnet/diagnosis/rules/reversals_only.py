@@ -19,6 +19,8 @@ from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
+CLEAR = 4.0  # ratio with the others only scaled, beyond which they are not fitted anew
+
 
 @final
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class ReversalsOnly(RejectionRule):
         for index, effect in zip(candidate.indices, candidate.effects, strict=True):
             if effect.joint is None or effect.joint not in dry or not acts_throughout(effect):
                 continue
+            if _as_they_are(candidate, effect, effect.joint) > CLEAR:
+                continue
             ratio = _ratio_between_reversals(candidate, index, effect.joint)
             if ratio <= candidate.limits.least_ratio:
                 detail = f"between changes of direction the error without it is {ratio:.4g} times that with it"
@@ -52,9 +56,30 @@ def acts_throughout(effect: NamedEffect) -> bool:
     return not (turns or law.reaches_all)
 
 
+def _as_they_are(candidate: Candidate, effect: NamedEffect, joint: int) -> float:
+    """The ratio where the torques of the others at the joint may be scaled, and no more."""
+    between = _between(candidate, joint)
+    own, *others = (
+        candidate.torque("fit", e)[between, joint] for e in (effect, *(e for e in candidate.effects if e != effect))
+    )
+    residual = candidate.residual("fit")[between, joint]
+    table = np.column_stack([np.zeros(own.size), *others])
+    left = residual + own - table @ np.linalg.lstsq(table, residual + own)[0]
+    return _ratio(left, residual)
+
+
 def _ratio_between_reversals(candidate: Candidate, index: int, joint: int) -> float:
     """Squared error without the effect over that with it; infinite where a joint does nothing but turn."""
-    between = np.concatenate([~near_reversal(p, joint)[p.keep] & p.counts[:, joint] for p in candidate.problem.fit])
+    between = _between(candidate, joint)
     others = candidate.without(index).effects  # fitted anew: beside the effect they stand for what it gets wrong
-    with_it, without = (np.sum(candidate.residual("fit", e)[between, joint] ** 2) for e in (None, others))
-    return float(without / with_it) if with_it > 0.0 else np.inf
+    return _ratio(*(candidate.residual("fit", e)[between, joint] for e in (others, None)))
+
+
+def _between(candidate: Candidate, joint: int) -> np.ndarray:
+    """Fitted samples between the changes of direction of a joint, at which it does not rest."""
+    return np.concatenate([~near_reversal(p, joint)[p.keep] & p.counts[:, joint] for p in candidate.problem.fit])
+
+
+def _ratio(without: np.ndarray, with_it: np.ndarray) -> float:
+    power = float(with_it @ with_it)
+    return float(without @ without) / power if power > 0.0 else np.inf
