@@ -12,6 +12,7 @@ from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTer
 
 CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
 GAIN = "gain"  # w of a recorded torque (1 + w) τ: of all joints but one where they are told against each other
+PATH = "path"  # friction that changes over the range of a joint
 OF_LOAD = ("load", GAIN)  # kinds of functions of the torque of the bodies
 LAG = 0.05  # of a period of the bandwidth, by which speed is delayed
 BRISTLE = (0.001, 0.006)  # of the range of a joint's motion, over which friction builds up after a reversal
@@ -82,7 +83,7 @@ def _over_position(j: int, low: float, high: float) -> list[TermGroup]:
         return []
     groups: dict[str, list[MotionTerm]] = {}
     for kind, (what, order) in OVER_POSITION.items():
-        name = "path" if what != "position" else "position" if order <= COARSE else "fine_position"
+        name = PATH if what != "position" else "position" if order <= COARSE else "fine_position"
         groups.setdefault(name, []).append(MotionTerm(kind, j, (high - low) / 2.0, centre=(high + low) / 2.0))
     return [TermGroup(name, tuple(terms), optional=True) for name, terms in groups.items()]
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, Group
-from lagnet.diagnosis.identified.dictionary import GAIN
+from lagnet.diagnosis.identified.dictionary import GAIN, PATH
 from lagnet.diagnosis.identified.evidence import START, JointEquations, Ridge, fit_ridge, joint_equations
 
 FOLDS = 6
@@ -18,6 +18,7 @@ INEFFICIENCIES = (3.0, 10.0, 20.0, 40.0)  # candidates for the statistical ineff
 COUPLED = 0.5  # largest held-out error of a joint with a coupling over that without
 MUCH = 0.005  # held-out error over the variance of the target, above which functions of the joint's position are tried
 BETTER = 0.8  # largest held-out error with these over that without, in the product over all joints
+FRICTION_BETTER = 0.5  # the same of friction that changes over the range, which speaks against the names of friction
 SCREENED = 0.8  # of the joint's fitted error, all else held fixed: what lowers it by less is not validated
 SCALED = 0.5  # largest held-out error with a scale of recorded torque over that without, in the product over all joints
 MAYBE = 0.8  # of the fitted error: what lowers this by less does not halve that of held-out blocks
@@ -131,12 +132,13 @@ def _scales(rows: _Rows, best: Choice, needed: frozenset[int]) -> frozenset[int]
 
 def _is_needed(rows: _Rows, best: Choice, index: int) -> bool:
     """Whether held-out blocks are predicted better with an optional group of one joint."""
-    joint = rows.design.groups[index].joint
+    group = rows.design.groups[index]
+    joint, better = group.joint, FRICTION_BETTER if group.name == PATH else BETTER
     if joint is None or best.nmse[joint] < MUCH * _variance_share(rows, joint):
         return False
     if _screened_ratio(rows, best, joint, index) > SCREENED:
         return False
-    return _validated(rows, best.inefficiency, best.excluded - {index}).score < best.score + float(np.log(BETTER))
+    return _validated(rows, best.inefficiency, best.excluded - {index}).score < best.score + float(np.log(better))
 
 
 def _variance_share(rows: _Rows, joint: int) -> float:
