@@ -12,7 +12,7 @@ from tests.diagnosis.posed import pose
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.free_bodies import explains
 from lagnet.diagnosis.identified.fit import identify
-from lagnet.diagnosis.reruns import MUCH, is_identified, is_outdone, on_one_clock
+from lagnet.diagnosis.reruns import MUCH, PUZZLING, is_identified, is_outdone, is_puzzled, on_one_clock
 from lagnet.diagnosis.settings import DecisionLimits
 from lagnet.diagnosis.unexplained.remainder import remainder_of, remainder_sizes
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -37,6 +37,7 @@ def as_state(posed, effects) -> Any:
         problem=posed.problem,
         effects=effects,
         sizes=sizes,
+        sizes_beside_supposed=sizes,
         noise=posed.noise,
         identified=found,
         identified_alone=alone,
@@ -63,6 +64,19 @@ def test_what_names_explain_asks_for_no_links(plant, arm) -> None:
     posed = pose(arm, real.record(1), real.record(2))
     candidate = posed.candidate(posed.select({j: ["coulomb_friction"] for j in range(3)}))
     assert not is_outdone(as_state(posed, candidate.effects))
+
+
+def test_a_cause_that_could_have_several_names_is_no_puzzle(plant, arm) -> None:
+    """Names of other joints stand as they are: links are not asked to explain what only lacks a name of its own."""
+    real = plant(friction)
+    nameless = DecisionLimits(most_names=0)
+    state = diagnose([real.record(1), real.record(2)], arm, [real.record(3)], limits=nameless).state
+    assert {(c.effect, c.joint) for c in state.ambiguous} == {("coulomb_friction", j) for j in range(3)}
+    assert not state.effects
+    assert min(size.share for size in state.sizes) > PUZZLING
+    assert max(size.share for size in state.sizes_beside_supposed) < PUZZLING
+    assert not is_puzzled(state)
+    assert state.judged is None
 
 
 @pytest.mark.parametrize("delta", [0.0, 0.4])

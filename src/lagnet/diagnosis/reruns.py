@@ -136,14 +136,15 @@ def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> D
 
 
 def names_as_many(second: DiagnosisState, first: DiagnosisState) -> bool:
-    """Whether another run has at least as many names: what one joint gains is no reason to forget others."""
-    return len(second.effects) >= len(first.effects)
+    """Whether another run has at least as many causes: what one joint gains is no reason to forget others."""
+    second_has, first_has = (len(one.effects) + len(one.ambiguous) for one in (second, first))
+    return second_has >= first_has
 
 
 def is_puzzled(state: DiagnosisState, much: float = PUZZLING) -> bool:
-    """Whether some joint has a large residual share, clearly above the noise."""
+    """Whether some joint has a large residual share, clearly above the noise; an ambiguous cause is no puzzle."""
     limits = (CLEARLY * state.noise) ** 2
-    left = zip(state.sizes, limits, strict=True)
+    left = zip(state.sizes_beside_supposed, limits, strict=True)
     return any(joint.above and joint.share > much and joint.power > limit for joint, limit in left)
 
 
@@ -154,12 +155,13 @@ def is_outdone(state: DiagnosisState) -> bool:
     """
     if any(effect_named(e.effect).is_body for e in state.effects):
         return False
-    much = [j for j, joint in enumerate(state.sizes) if joint.above and joint.share > MUCH]
+    sizes = state.sizes_beside_supposed
+    much = [j for j, joint in enumerate(sizes) if joint.above and joint.share > MUCH]
     found = state.identified if much else None
     if found is None:
         return False
     _, after = powers_beside(state.problem, state.problem.holdout, state.effects, found.layer)
-    return any(after[j] < state.sizes[j].power / OUTDONE for j in much)
+    return any(after[j] < sizes[j].power / OUTDONE for j in much)
 
 
 def is_identified(state: DiagnosisState) -> bool:

@@ -109,6 +109,14 @@ class DiagnosisState:
         return remainder_sizes(self.problem, self.after, self.noise)
 
     @cached_property
+    def sizes_beside_supposed(self) -> tuple[RemainderSize, ...]:
+        """How much remains at each joint beside the likeliest name of every ambiguous cause: what puzzles."""
+        if not self.supposed:
+            return self.sizes
+        effects = (*self.lasting_effects, *(p.effect for p in self.transients))
+        return remainder_sizes(self.problem, remainder_of(self.judged or self.problem, effects), self.noise)
+
+    @cached_property
     def remainders(self) -> tuple[JointRemainder, ...]:
         """The remainder of each joint: power, residual share and predictable share."""
         return joint_remainders(self.problem, self.after, self.sizes, self.noise, self.seed)
