@@ -30,6 +30,7 @@ from lagnet.diagnosis.problem.problem import Problem, blurred_speed
 from lagnet.diagnosis.problem.residuals import log_of_powers
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.reference_recording import beyond_one_recording
+from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.differing_recordings import (
@@ -76,6 +77,7 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
     """A run beside all links that recordings share; None where it explains no more than the first.
 
     Where no link of the model has mass, one of which a change has a name stands for others, however well it explains.
+    What plain terms replaced in the first run is not named beside links that have taken up a part of it.
     """
     puzzled, unknown = is_puzzled(first), not has_mass(first.problem.nominal)
     if first.problem.given is not None or not (unknown or (is_identified(first) if puzzled else is_outdone(first))):
@@ -86,10 +88,17 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
     second = settle_transients(run(free), run)
     if unknown:
         return second
+    if {(e.effect, e.joint) for e in second.refit.effects} & _imitations(first):
+        return None
     if puzzled:
         return None if is_puzzled(against_given(second)) else second
     before, after = (log_error(one.after, one.noise) for one in (first, second))
     return second if names_as_many(second, first) and after < before - BETTER else None
+
+
+def _imitations(state: DiagnosisState) -> set[tuple[str, int | None]]:
+    """Effect and joint of what plain terms of no effect replaced."""
+    return {(r.effect, r.joint) for r in state.rejected if r.rule == SurrogateTerms.name}
 
 
 def _beside_links_and_loads(first: DiagnosisState, run: Callable[[Problem], DiagnosisState]) -> DiagnosisState | None:
