@@ -47,7 +47,7 @@ def test_pages_open_from_files_and_ask_for_nothing_outside(site: Path, page: str
 @pytest.mark.browser
 @pytest.mark.xdist_group("site")
 def test_the_search_works_without_a_server(site: Path, browse: Callable[..., Any]) -> None:
-    seen = browse(site / "index.html", "?q=ReversalDelay")
+    seen = browse(site / "index.html", "?q=ReversalsOnly")
     assert not seen.console
     links = re.findall(r'href="([^"]*)" class="md-search-result__link"', seen.dom)
     assert any("reference/diagnosis.rules.html" in link for link in links)
