@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from lagnet.diagnosis.regression.normal_equations import nonnegative_solve, ridge_solve
+from lagnet.diagnosis.regression.normal_equations import left_beside, nonnegative_solve, ridge_solve
 
 RIDGE = 1e-9
 EXACT = 1e-6
@@ -41,3 +41,13 @@ def test_each_of_a_batch_holds_its_own() -> None:
     grams, moments = (np.array(x) for x in zip(*several, strict=True))
     for one, gram, moment in zip(nonnegative_solve(grams, moments, RIDGE, SIGNED), grams, moments, strict=True):
         np.testing.assert_allclose(one, nonnegative_solve(gram, moment, RIDGE, SIGNED), atol=EXACT)
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-12])
+def test_what_is_left_beside_columns_is_orthogonal_to_them_whatever_their_size(size: float) -> None:
+    rng = np.random.default_rng(3)
+    columns, wanted = size * rng.standard_normal((50, 3)) * [1.0, 1e6, 0.0], rng.standard_normal(50)
+    left = left_beside(columns, wanted, 1e-9)
+    assert columns[:, :2].T @ left == pytest.approx(np.zeros(2), abs=1e-9 * np.linalg.norm(columns))
+    assert np.sum(left**2) < np.sum(wanted**2)
+    assert left_beside(columns[:, :0], wanted, 1e-9) == pytest.approx(wanted)

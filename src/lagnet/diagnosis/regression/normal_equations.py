@@ -132,3 +132,8 @@ def scaled_weights(columns: np.ndarray, wanted: np.ndarray, rank: float) -> np.n
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0, size, 1.0)
     return np.linalg.lstsq(columns / size, wanted, rcond=rank)[0] / size
+
+
+def left_beside(columns: np.ndarray, wanted: np.ndarray, rank: float) -> np.ndarray:
+    """y − X argmin_w ‖X w − y‖², shape (n,); arguments as in `scaled_weights`."""
+    return wanted - columns @ scaled_weights(columns, wanted, rank)

@@ -131,6 +131,11 @@ class Candidate:
         """F τ_effect of one effect alone, zero where a sample is not valid, shape (n, dof) [N m]."""
         return self.residual(part, ()) - self.residual(part, (effect,))
 
+    def torques_at(self, part: Part, effect: NamedEffect, joint: int) -> np.ndarray:
+        """F τ at a joint of an effect, in the first column, and of each other one, shape (n, effects) [N m]."""
+        others = (e for e in self.effects if e != effect)
+        return np.column_stack([self.torque(part, e)[:, joint] for e in (effect, *others)])
+
     def without(self, *indices: int, instead: Sequence[int] = ()) -> Candidate:
         """The candidate without some hypotheses, with others in the place of the first, fitted again.
 

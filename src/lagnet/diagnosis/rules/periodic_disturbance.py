@@ -14,11 +14,14 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from lagnet.diagnosis.regression.normal_equations import left_beside
 from lagnet.diagnosis.rules.candidate import Candidate, Part
+from lagnet.diagnosis.rules.lack_of_fit import left_shares
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
+RANK = 1e-9
 PERIODS = 3  # least that the longest stretch must hold
 LONGEST, MOST = 2000, 8  # samples of a stretch, and stretches in which the frequency is looked for
 FINER, FINEST = 4, 40  # steps of the frequency in 1 / T, T the longest stretch: first, and around the best
@@ -59,9 +62,11 @@ class PeriodicDisturbance(RejectionRule):
     little: float = 0.01
 
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
+        fitted, held = (left_shares(candidate, part) for part in ("fit", "holdout"))
+        unexplained = {j for j, share in fitted.items() if min(share, held.get(j, 0.0)) > self.little}
         for index, effect in zip(candidate.indices, candidate.effects, strict=True):
             joint = effect.joint
-            if joint is None or effect_named(effect.effect).reaches_all or not self._is_unexplained(candidate, joint):
+            if joint is None or joint not in unexplained or effect_named(effect.effect).reaches_all:
                 continue
             found = _in_its_place(candidate, effect, joint)
             if found is not None and all(self._replaces(part) for part in found[1]):
@@ -74,12 +79,6 @@ class PeriodicDisturbance(RejectionRule):
         """Whether the sinusoid leaves much less than the effect, which explains nothing beside it."""
         needless = left.periodic - left.both <= self.nothing * (left.without - left.named)
         return left.named > 0.0 and left.periodic <= self.most_left * left.named and needless
-
-    def _is_unexplained(self, candidate: Candidate, joint: int) -> bool:
-        """Whether all effects leave more than the noise and the least share of a joint, fitted and held out."""
-        noise, least = candidate.noise[joint] ** 2, candidate.limits.above_noise**2 - 1.0
-        powers = [[candidate.power(part, e)[joint] - noise for e in ((), None)] for part in ("fit", "holdout")]
-        return all(after > max(least * noise, self.little * before) for before, after in powers)
 
 
 def _in_its_place(candidate: Candidate, effect: NamedEffect, joint: int) -> tuple[float, tuple[_Left, ...]] | None:
@@ -100,21 +99,15 @@ def _rows(candidate: Candidate, part: Part, effect: NamedEffect, joint: int) -> 
     valid = np.concatenate([p.counts[:, joint] for p in pieces])
     times = [p.time[p.keep][p.counts[:, joint]] for p in pieces]
     stretches = [t[k : k + LONGEST] for t in times for k in range(0, t.size, LONGEST)]
-    torques = (candidate.torque(part, e) for e in (effect, *(e for e in candidate.effects if e != effect)))
-    return stretches, np.column_stack([x[valid, joint] for x in (candidate.residual(part), *torques)])
+    columns = [candidate.residual(part)[:, joint], candidate.torques_at(part, effect, joint)]
+    return stretches, np.column_stack(columns)[valid]
 
 
 def _left(stretches: Sequence[np.ndarray], columns: np.ndarray, frequency: float, noise: float) -> _Left:
     named, without = columns[:, 0], columns[:, 0] + columns[:, 1]
-    rest, own, *others = _without_waves(stretches, frequency, np.column_stack([without, columns[:, 1:]])).T
-    both = _beside(rest, [own, *others])
-    return _Left(*(max(float(np.mean(r**2)) - noise, 0.0) for r in (without, named, _beside(rest, others), both)))
-
-
-def _beside(wanted: np.ndarray, columns: Sequence[np.ndarray]) -> np.ndarray:
-    """What least squares leaves of a torque."""
-    table = np.column_stack([np.zeros(wanted.size), *columns])
-    return wanted - table @ np.linalg.lstsq(table, wanted)[0]
+    still = _without_waves(stretches, frequency, np.column_stack([without, columns[:, 1:]]))
+    periodic, both = (left_beside(still[:, first:], still[:, 0], RANK) for first in (2, 1))
+    return _Left(*(max(float(np.mean(r**2)) - noise, 0.0) for r in (without, named, periodic, both)))
 
 
 def _without_waves(stretches: Sequence[np.ndarray], frequency: float, columns: np.ndarray) -> np.ndarray:
@@ -123,7 +116,7 @@ def _without_waves(stretches: Sequence[np.ndarray], frequency: float, columns: n
     for time in stretches:
         angle, rows = 2.0 * np.pi * frequency * time, slice(start, start + time.size)
         waves = np.column_stack([np.sin(angle), np.cos(angle)])
-        out[rows] -= waves @ np.linalg.lstsq(waves, columns[rows])[0]
+        out[rows] -= waves @ np.linalg.lstsq(waves, columns[rows], rcond=RANK)[0]
         start += time.size
     return out
 

@@ -13,12 +13,14 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from lagnet.diagnosis.regression.normal_equations import left_beside
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
+RANK = 1e-9
 CLEAR = 4.0  # ratio with the others only scaled, beyond which they are not fitted anew
 
 
@@ -59,13 +61,9 @@ def acts_throughout(effect: NamedEffect) -> bool:
 def _as_they_are(candidate: Candidate, effect: NamedEffect, joint: int) -> float:
     """The ratio where the torques of the others at the joint may be scaled, and no more."""
     between = _between(candidate, joint)
-    own, *others = (
-        candidate.torque("fit", e)[between, joint] for e in (effect, *(e for e in candidate.effects if e != effect))
-    )
+    torques = candidate.torques_at("fit", effect, joint)[between]
     residual = candidate.residual("fit")[between, joint]
-    table = np.column_stack([np.zeros(own.size), *others])
-    left = residual + own - table @ np.linalg.lstsq(table, residual + own)[0]
-    return _ratio(left, residual)
+    return _ratio(left_beside(torques[:, 1:], residual + torques[:, 0], RANK), residual)
 
 
 def _ratio_between_reversals(candidate: Candidate, index: int, joint: int) -> float:
