@@ -19,21 +19,22 @@ def blurred_sign(v: np.ndarray, slow: float, straight: bool = False) -> np.ndarr
 
 
 def held_direction(time: np.ndarray, v: np.ndarray, slow: float, direction: np.ndarray, share: float) -> np.ndarray:
-    """The direction s(v) with, at rest, a share of the direction of the motion before, shape (n,).
+    """s(v) + h s₀ (1 − |s(v)|) at rest, s₀ the direction of the motion before, shape (n,); elsewhere s(v).
 
-    Before the first motion nothing is known, and s(v) stays.
+    What a stop leaves of the friction gives way as the next motion begins, and does not last until it is fast. Before
+    the first motion nothing is known, and s(v) stays.
 
     Args:
         time: shape (n,), [s].
         v: shape (n,), [rad/s].
         slow: speed below which the joint is taken to rest [rad/s].
         direction: shape (n,), s(v).
-        share: 0 for friction without memory, 1 where all of it stays.
+        share: h, 0 for friction without memory, 1 where all of it stays.
     """
     out = direction.copy()
     for start, stop in _rests(time, v, slow):
         if start > 0:
-            out[start:stop] = share * np.sign(v[start - 1])
+            out[start:stop] += share * np.sign(v[start - 1]) * (1.0 - np.abs(direction[start:stop]))
     return out
 
 

@@ -22,7 +22,7 @@ def friction_at_rest(problem: Problem, effects: Sequence[NamedEffect]) -> np.nda
     n = problem.n_dof
     product, power, count = np.zeros(n), np.zeros(n), np.zeros(n)
     for piece in spread(problem.fit):
-        motion = piece.motion(problem)
+        motion = replace(piece.motion(problem), held=None)
         without = torque_with(motion, effects)
         fully = torque_with(replace(motion, held=np.ones(n)), effects)
         resting = ~piece.counts
