@@ -50,16 +50,16 @@ def test_every_place_is_there_and_holds_its_own_again_afterwards(rule: str, plac
 
 def test_a_function_is_replaced_wherever_it_was_imported() -> None:
     import lagnet.diagnosis.diagnose as entrance
-    import lagnet.diagnosis.reruns as reruns
+    import lagnet.diagnosis.reruns.band as band
 
     own = entrance.best_band
     with taken_out(ablation_named("narrower band").instead):
-        assert entrance.best_band is reruns.best_band is not own
+        assert entrance.best_band is band.best_band is not own
     assert entrance.best_band is own
 
 
 def test_a_place_that_is_not_there_is_an_error() -> None:
-    with pytest.raises(AttributeError), taken_out({"lagnet.diagnosis.reruns:no_such_step": lambda old: old}):
+    with pytest.raises(AttributeError), taken_out({"lagnet.diagnosis.reruns.band:no_such_step": lambda old: old}):
         pass
 
 

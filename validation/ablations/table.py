@@ -139,17 +139,17 @@ WITHOUT_STEP = (
     Ablation(
         "narrower band",
         "the first bandwidth is kept whatever is left unexplained",
-        instead={"lagnet.diagnosis.reruns:best_band": neutral.first_argument},
+        instead={"lagnet.diagnosis.reruns.band:best_band": neutral.first_argument},
     ),
     Ablation(
         "shared clock",
         "a shift that all joints share is a delay of each",
-        instead={"lagnet.diagnosis.reruns:on_one_clock": neutral.first_argument},
+        instead={"lagnet.diagnosis.reruns.clock:on_one_clock": neutral.first_argument},
     ),
     Ablation(
         "transients",
         "nothing acts for a while only",
-        instead={"lagnet.diagnosis.reruns:settle_transients": neutral.first_argument},
+        instead={"lagnet.diagnosis.reruns.transients:settle_transients": neutral.first_argument},
     ),
 )
 """Steps of the search and of the estimation; patched where no parameter of `diagnose` turns them off."""

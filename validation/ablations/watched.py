@@ -51,9 +51,9 @@ WATCHED = frozenset(
         "lagnet.diagnosis.identifiability.ambiguity:ambiguous_causes",
         "lagnet.diagnosis.estimation.physical_bodies:with_physical_bodies",
         "lagnet.diagnosis.estimation.friction_at_rest:friction_at_rest",
-        "lagnet.diagnosis.reruns:best_band",
-        "lagnet.diagnosis.reruns:on_one_clock",
-        "lagnet.diagnosis.reruns:settle_transients",
+        "lagnet.diagnosis.reruns.band:best_band",
+        "lagnet.diagnosis.reruns.clock:on_one_clock",
+        "lagnet.diagnosis.reruns.transients:settle_transients",
     }
 )
 """Places whose neutral costs nothing, so that it can be asked beside the step."""

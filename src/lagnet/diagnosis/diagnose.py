@@ -19,7 +19,10 @@ from lagnet.diagnosis.pipeline import Inputs, run_pipeline, with_misspecificatio
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.noise_floor import noise_floor
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
-from lagnet.diagnosis.reruns import beside_links, best_band, on_one_clock, settle_transients
+from lagnet.diagnosis.reruns.band import best_band
+from lagnet.diagnosis.reruns.clock import on_one_clock
+from lagnet.diagnosis.reruns.links import beside_links
+from lagnet.diagnosis.reruns.transients import settle_transients
 from lagnet.diagnosis.rules.catalogue import RULES
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.settings import DecisionLimits

@@ -46,7 +46,7 @@ def test_a_bandwidth_that_is_given_is_kept(recordings, arm) -> None:
 
 def test_where_nothing_puzzles_one_band_is_enough(plant, arm, at, monkeypatch) -> None:
     tried = []
-    monkeypatch.setattr("lagnet.diagnosis.reruns._narrower", lambda *given: tried.append(given) or [])
+    monkeypatch.setattr("lagnet.diagnosis.reruns.band._narrower", lambda *given: tried.append(given) or [])
     real = plant(at(1, lambda q, v, a, t: FRICTION * v))
     diagnose([real.record(1)], arm, [real.record(2)])
     assert not tried

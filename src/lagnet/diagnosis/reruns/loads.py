@@ -1,0 +1,34 @@
+"""A run beside the loads by which single recordings differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from lagnet.diagnosis.problem.problem import Problem
+from lagnet.diagnosis.state import DiagnosisState
+from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.differing_recordings import Differing, lasting_loads, without_loads
+from lagnet.diagnosis.transients.separation import separate
+
+
+def beside_loads(
+    state: DiagnosisState, found: Differing | None, again: Callable[[Problem], DiagnosisState]
+) -> DiagnosisState | None:
+    """Persistent effects beside the loads of single recordings; None where there are none."""
+    if found is None:
+        return None
+    problem = found.problem
+    clean = again(without_loads(problem, found.loads))
+    whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
+    parts = separated(replace(clean, problem=whole), found.scan)
+    return replace(parts, transients=lasting_loads(whole, parts.transients), events=())
+
+
+def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
+    power = np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power)
+    sigma = np.sqrt(power / clean.equations.samples)
+    parts = separate(clean.problem, clean.refit.effects, sigma, scan)
+    return replace(clean, refit=parts.refit, transients=parts.transients, events=parts.unnamed)
