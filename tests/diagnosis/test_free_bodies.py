@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.diagnosis.stop_and_go import COULOMB, stop_and_go
 
 from lagnet.diagnosis.diagnose import Diagnosis, diagnose
-from lagnet.diagnosis.free_bodies import against_given, are_scaled_widely
+from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
+from lagnet.diagnosis.free_bodies import against_given, are_scaled_widely, take_the_place_of_gains
+from lagnet.diagnosis.unexplained.remainder import remainder_of
 from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.rigid_body.random_arm import random_arm
@@ -99,3 +103,13 @@ def test_gains_at_half_of_the_joints_ask_for_the_links(joints: int, asked: bool)
     effects = [NamedEffect("torque_gain", j, {"g": 0.8}) for j in range(min(2, joints))]
     candidate: Any = SimpleNamespace(effects=effects, problem=SimpleNamespace(n_dof=joints))
     assert are_scaled_widely(candidate) is asked
+
+
+def test_free_links_do_not_win_by_what_friction_keeps_at_rest() -> None:
+    """The run beside free links knows the share by then; the candidate is asked with the share as well."""
+    problem, noise = stop_and_go(joints=3), np.full(3, 1e-3)
+    gain = NamedEffect("torque_gain", 1, {"g": 0.8})
+    known = replace(problem, held=friction_at_rest(problem, [COULOMB]))
+    beside: Any = SimpleNamespace(effects=[COULOMB], after=remainder_of(known, [COULOMB]))
+    candidate: Any = SimpleNamespace(effects=[COULOMB, gain], problem=problem, noise=noise)
+    assert not take_the_place_of_gains(beside, candidate)

@@ -14,6 +14,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
 from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.identified.real_inertia import columns_of, given_to_links
@@ -72,7 +73,8 @@ def take_the_place_of_gains(beside: DiagnosisState, candidate: Candidate) -> boo
         return False
     if are_scaled_everywhere(candidate):
         return True
-    gains = remainder_of(candidate.problem, candidate.effects)
+    at_rest = friction_at_rest(candidate.problem, candidate.effects)  # as the other run has it
+    gains = remainder_of(replace(candidate.problem, held=at_rest), candidate.effects)
     return log_error(gains, candidate.noise) - log_error(beside.after, candidate.noise) > BETTER
 
 
