@@ -20,7 +20,7 @@ from lagnet.diagnosis.free_bodies import (
     bodies_are_refuted,
     take_the_place_of_gains,
 )
-from lagnet.diagnosis.identifiability.ambiguity import ambiguous_causes
+from lagnet.diagnosis.identifiability.ambiguity import AmbiguousCause, ambiguous_causes
 from lagnet.diagnosis.identifiability.equivalent_laws import tie_equivalent_laws
 from lagnet.diagnosis.identifiability.first_joint_zero import tie_tilt_and_first_zero
 from lagnet.diagnosis.identifiability.rivals import Comparison, compare_with_rivals
@@ -30,11 +30,12 @@ from lagnet.diagnosis.problem.intervals import lasting
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.block_gram import collect_block_grams
 from lagnet.diagnosis.regression.cross_validation import sum_normal_equations
-from lagnet.diagnosis.rules.apply import apply_rules
+from lagnet.diagnosis.rules.apply import Eliminated, apply_rules
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import RejectionRule
 from lagnet.diagnosis.selection.iterated_search import search
 from lagnet.diagnosis.state import DiagnosisState
+from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import Conditioned
 
 
@@ -58,47 +59,81 @@ class Inputs:
     layers: KnownLayers = field(default_factory=KnownLayers)
 
 
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What all rules leave.
+
+    Args:
+        left: the candidate, and all rejections.
+        comparisons: of each of its effects with its rivals.
+        ambiguous: causes that too many names explain equally, which are no longer among the effects.
+        supposed: the effects as they were fitted with these; empty where there are none.
+    """
+
+    left: Eliminated
+    comparisons: tuple[Comparison, ...]
+    ambiguous: tuple[AmbiguousCause, ...] = ()
+    supposed: tuple[NamedEffect, ...] = ()
+
+
 def run_pipeline(problem: Problem, given: Inputs) -> DiagnosisState:
     """Search, elimination, comparison with rivals, and what is held out, in this order."""
+    first = _searched(problem, given)
+    left = apply_rules([r for r in given.rules if not r.after_refit], first)
+    if left.candidate.problem.given is None:
+        left = replace(left, candidate=without_wide_gains(with_real_bodies(left.candidate)))
+        beside = _beside_free_links(left.candidate, given)
+        if beside is not None:
+            return beside
+    left = _further(left, [r for r in given.rules if r.after_refit])
+    return _concluded(_judged(left, given), given)
+
+
+def _searched(problem: Problem, given: Inputs) -> Candidate:
+    """The best selection of hypotheses, as the rules see it."""
     problem, equations, found = search(problem, given.noise)
     unseen = sum_normal_equations(
         equations.library, collect_block_grams(problem, equations.library, problem.holdout), problem.limits
     )
-    first = Candidate(problem, equations, unseen, found, given.noise, given.seed, layers=given.layers)
-    left = apply_rules([r for r in given.rules if not r.after_refit], first)
-    candidate, rejected = left.candidate, left.rejected
-    if problem.given is None:
-        candidate = without_wide_gains(with_real_bodies(candidate))
-        beside = _beside_free_links(candidate, given)
-        if beside is not None:
-            return beside
-    left = apply_rules([r for r in given.rules if r.after_refit], candidate)
-    candidate, rejected = left.candidate, (*rejected, *left.rejected)
-    comparisons = _comparisons(candidate)
-    ambiguous, supposed = ambiguous_causes(equations.library, comparisons, problem.limits.most_names), ()
-    if ambiguous:
-        supposed = candidate.refit.effects
-        again = apply_rules([r for r in given.rules if r.after_each_fit], candidate.without(*ambiguous))
-        candidate, rejected = again.candidate, (*rejected, *again.rejected)
-        comparisons = _comparisons(candidate)
-    fitted, found = with_special_cases(problem, candidate.refit, candidate.sigma), candidate.selection
-    problem = replace(problem, held=friction_at_rest(problem, fitted.effects))
+    return Candidate(problem, equations, unseen, found, given.noise, given.seed, layers=given.layers)
+
+
+def _further(left: Eliminated, rules: Sequence[RejectionRule], *gone: int) -> Eliminated:
+    """What further rules leave of a candidate, without some hypotheses; all rejections are kept."""
+    again = apply_rules(rules, left.candidate.without(*gone) if gone else left.candidate)
+    return replace(again, rejected=(*left.rejected, *again.rejected))
+
+
+def _judged(left: Eliminated, given: Inputs) -> Judged:
+    """The candidate without ambiguous causes, and how what remains compares with its rivals."""
+    candidate, comparisons = left.candidate, _comparisons(left.candidate)
+    ambiguous = ambiguous_causes(candidate.library, comparisons, candidate.limits.most_names)
+    if not ambiguous:
+        return Judged(left, comparisons)
+    again = _further(left, [r for r in given.rules if r.after_each_fit], *ambiguous)
+    return Judged(again, _comparisons(again.candidate), tuple(ambiguous.values()), candidate.refit.effects)
+
+
+def _concluded(found: Judged, given: Inputs) -> DiagnosisState:
+    """The state of what remains: special cases where these do, and friction at rest."""
+    candidate = found.left.candidate
+    fitted = with_special_cases(candidate.problem, candidate.refit, candidate.sigma)
     return DiagnosisState(
-        problem,
+        replace(candidate.problem, held=friction_at_rest(candidate.problem, fitted.effects)),
         given.fit,
         given.holdout,
         given.noise,
-        equations.library,
-        equations,
-        unseen,
-        found,
-        comparisons,
+        candidate.library,
+        candidate.equations,
+        candidate.holdout_equations,
+        candidate.selection,
+        found.comparisons,
         candidate.holdout_gain,
         fitted,
         given.seed,
-        rejected,
-        ambiguous=tuple(ambiguous.values()),
-        supposed=supposed,
+        found.left.rejected,
+        ambiguous=found.ambiguous,
+        supposed=found.supposed,
         layers=given.layers,
     )
 
