@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lagnet.rigid_body.changed_bodies_torque import torque_of_change
+from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com
 from lagnet.rigid_body.random_arm import random_arm
 
 N, SAMPLES = 4, 30
@@ -50,3 +51,21 @@ def test_of_a_model_that_is_no_robot_the_regressor_is_asked_in_pieces() -> None:
     found = torque_of_change(asked, change, *motion(9000))
     np.testing.assert_allclose(found, torque_of_change(robot, change, *motion(9000)), rtol=1e-9, atol=1e-9)
     assert asked.largest < 5000
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_thin_rod_has_its_torque_however_its_tensor_is_rounded(axis) -> None:
+    """A rod along one axis has no inertia about that axis, or 1e-18 kg m² less."""
+    robot, g, odd = random_arm(N, seed=3), np.random.default_rng(axis), 0
+    for _ in range(300):
+        ends = g.normal(size=3) + np.outer([-1.0, 1.0], np.eye(3)[axis] * g.uniform(0.01, 1.0))
+        rod = sum(
+            parameters_of_body(m, end, np.zeros((3, 3))) for m, end in zip(g.uniform(0.1, 5.0, 2), ends, strict=True)
+        )
+        odd += tensor_about_com(rod)[axis, axis] < 0.0
+        change = np.outer(np.eye(N)[-1], rod)
+        expected = robot.joint_torque_regressor(*motion(2)) @ change.ravel()
+        np.testing.assert_allclose(
+            robot.with_inertial_parameters(change).inverse_dynamics(*motion(2)), expected, rtol=1e-9, atol=1e-9
+        )
+    assert odd > 10

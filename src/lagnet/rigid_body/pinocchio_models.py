@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
+from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_origin
 from lagnet.rigid_body.untyped_pinocchio import Data, Inertia, Model, pin
 
 
@@ -103,4 +103,4 @@ def _inertia(row: np.ndarray) -> Inertia:
         if row[1:4].any():
             raise ValueError("a body of zero mass has a first moment; give it a mass")
         return pin.Inertia(0.0, np.zeros(3), tensor_about_origin(row))
-    return pin.Inertia(float(row[0]), row[1:4] / row[0], tensor_about_com(row))
+    return pin.Inertia.FromDynamicParameters(row)  # of a flat body whose tensor is rounded below zero, too
