@@ -78,28 +78,35 @@ def _local_odds(view: JointView, own: tuple[int, ...], other: tuple[int, ...]) -
 
 
 def _open_to(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
-    """The wider law that the evidence likes best, where its further term may be there: it fits as well at least.
+    """All wider laws whose further term may be there, each at the shape that the evidence likes best.
 
-    Where the evidence prefers it the search refused it: at the least shape that was tried (a Stribeck speed this close
+    Where the evidence prefers one the search refused it: at the least shape that was tried (a Stribeck speed this close
     to the zone that noise blurs could be the blur itself), or as too little beside what the plain law explains, whose
     form is never exact; but real joints leave more than one further term would account for. Where the evidence does not
-    tell, a term stays open that gains more than the form of the plain law may.
+    tell, a term stays open that gains more than the form of the plain law may. Which of two such terms fits better says
+    as little: what neither law knows of a joint decides that.
     """
     hypotheses = view.equations.library.hypotheses
     others = tuple(k for k in own if k != index)
-    wider = [
-        k for k in view.equations.library.local[view.joint] if hypotheses[index].effect in hypotheses[k].law.contains
-    ]
-    scores = {k: view.score((*others, k)) for k in wider if compatible(view, others, k)}
-    best = max(scores, key=lambda k: scores[k], default=None)
-    if best is None or not np.isfinite(scores[best]):
-        return set()
-    wider_one = (*others, best)
-    preferred = (scores[best] - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
-    is_open = _form_matters(view, wider_one, own, others) or (
-        preferred and _accounts_for_what_is_left(view, wider_one, own)
-    )
-    return {hypotheses[best].effect} if is_open else set()
+    best: dict[str, tuple[float, tuple[int, ...]]] = {}
+    for k in view.equations.library.local[view.joint]:
+        law = hypotheses[k].law
+        if hypotheses[index].effect in law.contains and compatible(view, others, k):
+            wider = (*others, k)
+            best[law.name] = max(best.get(law.name, (-np.inf, wider)), (view.score(wider), wider))
+    return {name for name, (score, wider) in best.items() if _is_open(view, own, others, wider, score)}
+
+
+def _is_open(
+    view: JointView, own: tuple[int, ...], others: tuple[int, ...], wider: tuple[int, ...], score: float
+) -> bool:
+    """Whether a wider law, of that score, in the place of the plain one could be the cause."""
+    if not np.isfinite(score):
+        return False
+    if _form_matters(view, wider, own, others):
+        return True
+    preferred = (score - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
+    return preferred and _accounts_for_what_is_left(view, wider, own)
 
 
 def _form_matters(view: JointView, wider: tuple[int, ...], own: tuple[int, ...], others: tuple[int, ...]) -> bool:
