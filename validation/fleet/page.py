@@ -66,7 +66,8 @@ def measured(page: str) -> dict[str, Any]:
         def log_message(self, format: str, *args: object) -> None:
             """Nothing on the terminal."""
 
-    with HTTPServer(("127.0.0.1", 0), Handler) as server, tempfile.TemporaryDirectory() as profile:
+    folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # Chromium's children write a moment longer
+    with HTTPServer(("127.0.0.1", 0), Handler) as server, folder as profile:
         server.timeout = 1.0
         words = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", f"--user-data-dir={profile}"]
         browser = subprocess.Popen(
