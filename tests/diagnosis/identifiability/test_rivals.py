@@ -52,7 +52,7 @@ def test_beside_something_larger_that_no_law_has_a_further_term_of_size_stays_op
 
 
 def test_all_wider_laws_that_could_be_the_cause_are_told(arm, plant, at) -> None:
-    """Beside 1.5 N m of ripple the further terms of two laws gain as much each; one that fits better closes no other."""
+    """Beside 1.5 N m of ripple the further terms of two laws gain as much each: the better closes no other."""
 
     def law(q, v, a, tau):
         return (DRY + 0.3 * DRY * np.exp(-((v / 0.1) ** 2))) * np.sign(v) + 0.1 * DRY + 1.5 * np.sin(9.0 * q)

@@ -75,3 +75,26 @@ def test_what_lasts_is_fitted_to_a_recording_before_something_is_said_to_act_all
     assert [t.effect.effect for t in found.transients] == (["contact_force"] if pushed else [])
     assert found.unnamed == ()
     assert found.refit.effects[0].values["m"] == pytest.approx(MASS, rel=0.03)
+
+
+RIPPLE = 0.2  # of the usual torque
+
+
+def test_loads_of_all_recordings_need_not_stand_beside_laws_of_one_alone(plant, arm) -> None:
+    """Springs and offsets fitted to one recording take the weight of its load: there is no other that denies them.
+
+    A ripple of a fifth of the torque is then more than what the load explains beside them.
+    """
+    size = plant().usual_torque()
+    centres = (np.array([0.15, 0.0, 0.1]), np.array([-0.15, 0.0, 0.1]))
+    arms = [arm.with_payload(2.0, centre, 3e-3 * np.eye(3)) for centre in centres]
+    loaded = [plant(lambda q, v, a, tau: RIPPLE * size * np.sin(9.0 * q), robot=one) for one in arms]
+    records = [real.record(seed, 8.0) for seed, real in enumerate(loaded, 1)]
+    fit = condition(records)
+    problem = pose_problem(arm, fit, condition([loaded[0].record(3, 8.0)], fit.bandwidth))
+    laws = {"joint_spring": {"k": 0.0, "q0": 0.0}, "torque_offset": {"b": 0.0}, "viscous_friction": {"Fv": 0.0}}
+    beside = [NamedEffect(law, joint, values) for joint in range(arm.n_dof) for law, values in laws.items()]
+    noise = np.full(arm.n_dof, 0.1) * problem.scale
+    events = [EventInterval(n, False, float(r.time[0]), float(r.time[-1]), 1e4) for n, r in enumerate(records)]
+    found = separate(problem, beside, noise, Scan(tuple(events), noise**2, 1.0))
+    assert sorted((t.effect.effect, t.effect.recording) for t in found.transients) == [("payload", 0), ("payload", 1)]

@@ -91,9 +91,11 @@ def _stands_beside(
     """Whether what acts all along a recording also does where all that lasts is fitted to that recording, too.
 
     Laws of the other recordings alone are extrapolated to it, and may leave there what they need not. What acts for
-    a while stands out from the rest of its recording.
+    a while stands out from the rest of its recording. Where something acts all along every recording, no law is of
+    others alone.
     """
-    if not fills(problem, event):
+    filled = {s.recording for s in scan.events if not s.held_out and fills(problem, s)}
+    if event.recording not in filled or filled == {p.recording for p in problem.fit}:
         return True
     known = set_aside(problem, [s for s in scan.events if s is not event])
     return _convinces(fit_event(problem, refit(known, persistent, sigma).effects, event, scan))
