@@ -69,3 +69,11 @@ def test_a_thin_rod_has_its_torque_however_its_tensor_is_rounded(axis) -> None:
             robot.with_inertial_parameters(change).inverse_dynamics(*motion(2)), expected, rtol=1e-9, atol=1e-9
         )
     assert odd > 10
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_moment_of_inertia_below_zero_is_refused(axis) -> None:
+    tensor = np.diag(np.where(np.arange(3) == axis, -1e-6, 0.1))
+    body = parameters_of_body(2.0, np.array([0.1, 0.2, 0.3]), tensor)
+    with pytest.raises(ValueError, match="has -1e-06 kg m² about its centre of mass"):
+        random_arm(N, seed=3).with_inertial_parameters(np.outer(np.eye(N)[-1], body))

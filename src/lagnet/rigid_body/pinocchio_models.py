@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_origin
+from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com, tensor_about_origin
 from lagnet.rigid_body.untyped_pinocchio import Data, Inertia, Model, pin
+
+ROUNDED = 1e-12  # of a tensor about the origin, by which rounding takes that about the centre of mass below zero
 
 
 def with_gravity(model: Model, gravity: np.ndarray) -> Model:
@@ -26,7 +28,8 @@ def with_inertial_parameters(model: Model, parameters: np.ndarray) -> Model:
     """A copy with other bodies.
 
     Raises:
-        ValueError: parameters are not of shape (dof, 10), or a body has a first moment and no mass.
+        ValueError: parameters are not of shape (dof, 10), or a body has a first moment and no mass, or a negative
+            moment of inertia about its centre of mass.
     """
     parameters = np.asarray(parameters, dtype=float)
     if parameters.shape != (model.nv, 10):
@@ -97,10 +100,14 @@ def _inertia(row: np.ndarray) -> Inertia:
     """A body from ten parameters.
 
     Raises:
-        ValueError: first moment without mass, which no body has and Pinocchio cannot hold.
+        ValueError: first moment without mass, which no body has and Pinocchio cannot hold; or a negative moment of
+            inertia about the centre of mass, beyond rounding, as that of a flat body may be.
     """
     if row[0] == 0.0:
         if row[1:4].any():
             raise ValueError("a body of zero mass has a first moment; give it a mass")
         return pin.Inertia(0.0, np.zeros(3), tensor_about_origin(row))
-    return pin.Inertia.FromDynamicParameters(row)  # of a flat body whose tensor is rounded below zero, too
+    least, size = np.diagonal(tensor_about_com(row)).min(), np.abs(tensor_about_origin(row)).max()
+    if least < -ROUNDED * size:
+        raise ValueError(f"a body has {least:.3g} kg m² about its centre of mass; no moment of inertia is negative")
+    return pin.Inertia.FromDynamicParameters(row)
