@@ -47,7 +47,9 @@ def test_each_of_a_batch_holds_its_own() -> None:
 def test_what_is_left_beside_columns_is_orthogonal_to_them_whatever_their_size(size: float) -> None:
     rng = np.random.default_rng(3)
     columns, wanted = size * rng.standard_normal((50, 3)) * [1.0, 1e6, 0.0], rng.standard_normal(50)
-    left = left_beside(columns, wanted, 1e-9)
+    left = left_beside(columns, wanted)
     assert columns[:, :2].T @ left == pytest.approx(np.zeros(2), abs=1e-9 * np.linalg.norm(columns))
     assert np.sum(left**2) < np.sum(wanted**2)
-    assert left_beside(columns[:, :0], wanted, 1e-9) == pytest.approx(wanted)
+    assert left_beside(columns[:, :0], wanted) == pytest.approx(wanted)
+    pair = left_beside(columns, np.column_stack([wanted, 2.0 * wanted]))
+    assert pair == pytest.approx(np.column_stack([left, 2.0 * left]))

@@ -88,24 +88,21 @@ def _open_to(view: JointView, own: tuple[int, ...], index: int) -> set[str]:
     """
     hypotheses = view.equations.library.hypotheses
     others = tuple(k for k in own if k != index)
-    best: dict[str, tuple[float, tuple[int, ...]]] = {}
+    likeliest: dict[str, tuple[int, ...]] = {}
     for k in view.equations.library.local[view.joint]:
         law = hypotheses[k].law
         if hypotheses[index].effect in law.contains and compatible(view, others, k):
-            wider = (*others, k)
-            best[law.name] = max(best.get(law.name, (-np.inf, wider)), (view.score(wider), wider))
-    return {name for name, (score, wider) in best.items() if _is_open(view, own, others, wider, score)}
+            likeliest[law.name] = max(likeliest.get(law.name, (*others, k)), (*others, k), key=view.score)
+    return {name for name, wider in likeliest.items() if _is_open(view, wider, own, others)}
 
 
-def _is_open(
-    view: JointView, own: tuple[int, ...], others: tuple[int, ...], wider: tuple[int, ...], score: float
-) -> bool:
-    """Whether a wider law, of that score, in the place of the plain one could be the cause."""
-    if not np.isfinite(score):
+def _is_open(view: JointView, wider: tuple[int, ...], own: tuple[int, ...], others: tuple[int, ...]) -> bool:
+    """Whether a wider law in the place of the plain one could be the cause."""
+    if not np.isfinite(view.score(wider)):
         return False
     if _form_matters(view, wider, own, others):
         return True
-    preferred = (score - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
+    preferred = (view.score(wider) - view.score(own)) / np.log(10.0) >= view.limits.tie_odds
     return preferred and _accounts_for_what_is_left(view, wider, own)
 
 

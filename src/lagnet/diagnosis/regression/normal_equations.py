@@ -10,6 +10,7 @@ from scipy.optimize import lsq_linear
 RIDGE = 1e-9  # of a parameter's own power, for directions that the data do not determine
 NOTHING = 1e-40  # of the largest power of a derivative: below it, a coordinate has no influence
 OPEN = 1e-8  # of the power along a direction if nothing else moved: below it, a scaled eigenvalue is rounding
+RANK = 1e-9  # of the largest singular value, columns scaled to one: below it, a direction is undetermined
 TURNED = 1e-6  # of a coordinate's square that lies in undetermined directions: below it, it is determined
 
 
@@ -121,19 +122,19 @@ def _scaled(gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return gram * scale[:, None] * scale[None, :] + RIDGE * np.eye(len(gram)), scale
 
 
-def scaled_weights(columns: np.ndarray, wanted: np.ndarray, rank: float) -> np.ndarray:
-    """argmin_w ‖X w − y‖², shape (k,), for columns X (n, k) and wanted y (n,); a column of zeros gets zero.
+def scaled_weights(columns: np.ndarray, wanted: np.ndarray, rank: float = RANK) -> np.ndarray:
+    """argmin_w ‖X w − y‖², (k,) or (k, m), for X (n, k) and wanted y (n,) or (n, m); a column of zeros gets zero.
 
     Args:
         rank: of the largest singular value, columns scaled to one, below which a direction is left at zero.
     """
     if not columns.shape[1]:
-        return np.zeros(0)
+        return np.zeros((0, *wanted.shape[1:]))
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0, size, 1.0)
-    return np.linalg.lstsq(columns / size, wanted, rcond=rank)[0] / size
+    return (np.linalg.lstsq(columns / size, wanted, rcond=rank)[0].T / size).T
 
 
-def left_beside(columns: np.ndarray, wanted: np.ndarray, rank: float) -> np.ndarray:
-    """y − X argmin_w ‖X w − y‖², shape (n,); arguments as in `scaled_weights`."""
-    return wanted - columns @ scaled_weights(columns, wanted, rank)
+def left_beside(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """y − X argmin_w ‖X w − y‖², shape (n,) or (n, m); arguments as in `scaled_weights`."""
+    return wanted - columns @ scaled_weights(columns, wanted)

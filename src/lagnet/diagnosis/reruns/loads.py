@@ -28,6 +28,12 @@ def beside_loads(
 
 
 def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
+    """A run without the intervals of a scan, with what acts there for a while only apart from what lasts.
+
+    Args:
+        clean: the run, all samples valid again.
+        scan: the intervals.
+    """
     power = np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power)
     sigma = np.sqrt(power / clean.equations.samples)
     parts = separate(clean.problem, clean.refit.effects, sigma, scan)

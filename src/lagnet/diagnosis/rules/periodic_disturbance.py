@@ -21,7 +21,6 @@ from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
-RANK = 1e-9
 PERIODS = 3  # least that the longest stretch must hold
 LONGEST, MOST = 2000, 8  # samples of a stretch, and stretches in which the frequency is looked for
 FINER, FINEST = 4, 40  # steps of the frequency in 1 / T, T the longest stretch: first, and around the best
@@ -106,7 +105,7 @@ def _rows(candidate: Candidate, part: Part, effect: NamedEffect, joint: int) -> 
 def _left(stretches: Sequence[np.ndarray], columns: np.ndarray, frequency: float, noise: float) -> _Left:
     named, without = columns[:, 0], columns[:, 0] + columns[:, 1]
     still = _without_waves(stretches, frequency, np.column_stack([without, columns[:, 1:]]))
-    periodic, both = (left_beside(still[:, first:], still[:, 0], RANK) for first in (2, 1))
+    periodic, both = (left_beside(still[:, first:], still[:, 0]) for first in (2, 1))
     return _Left(*(max(float(np.mean(r**2)) - noise, 0.0) for r in (without, named, periodic, both)))
 
 
@@ -116,7 +115,7 @@ def _without_waves(stretches: Sequence[np.ndarray], frequency: float, columns: n
     for time in stretches:
         angle, rows = 2.0 * np.pi * frequency * time, slice(start, start + time.size)
         waves = np.column_stack([np.sin(angle), np.cos(angle)])
-        out[rows] -= waves @ np.linalg.lstsq(waves, columns[rows], rcond=RANK)[0]
+        out[rows] = left_beside(waves, columns[rows])
         start += time.size
     return out
 

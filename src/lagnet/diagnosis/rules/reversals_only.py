@@ -20,7 +20,6 @@ from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
-RANK = 1e-9
 CLEAR = 4.0  # ratio with the others only scaled, beyond which they are not fitted anew
 
 
@@ -63,7 +62,7 @@ def _as_they_are(candidate: Candidate, effect: NamedEffect, joint: int) -> float
     between = _between(candidate, joint)
     torques = candidate.torques_at("fit", effect, joint)[between]
     residual = candidate.residual("fit")[between, joint]
-    return _ratio(left_beside(torques[:, 1:], residual + torques[:, 0], RANK), residual)
+    return _ratio(left_beside(torques[:, 1:], residual + torques[:, 0]), residual)
 
 
 def _ratio_between_reversals(candidate: Candidate, index: int, joint: int) -> float:

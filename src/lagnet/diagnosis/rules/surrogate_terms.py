@@ -23,7 +23,6 @@ from lagnet.diagnosis.rules.candidate import Candidate, Part
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.effects.catalogue import effect_named
 
-RANK = 1e-9
 NEW = 1e-3  # of a term's size that must be new beside the terms before it
 TURNS = (1, 2, 3)  # of the joint's own angle, along which friction may change
 TAUT = np.linspace(0.1, 0.9, 9)  # shares of the samples below the angle at which a cable or a bumper may go taut
@@ -129,7 +128,7 @@ class SurrogateTerms(RejectionRule):
 
 def _residual_shares(fit: _Side, unseen: _Side, fitted: np.ndarray, there: np.ndarray) -> np.ndarray:
     """Residual shares in the fit and held out of columns with weights of the fit."""
-    weights = scaled_weights(fitted, fit.wanted, RANK)
+    weights = scaled_weights(fitted, fit.wanted)
     return np.array([fit.residual_share(fitted, weights), unseen.residual_share(there, weights)])
 
 
