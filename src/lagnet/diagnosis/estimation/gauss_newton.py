@@ -52,6 +52,10 @@ class Slots:
         return np.concatenate([np.zeros(0, dtype=bool), *(e.chosen() for e in self.effects)])
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return self._bounds
+
+    @cached_property
+    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         pairs = [e.coordinate_bounds() for e in self.effects]
         return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
 
@@ -118,11 +122,11 @@ class GaussNewton:
     def _moved(self, x: np.ndarray, i: int) -> tuple[float, int | None, NamedEffect | None]:
         """Step of a coordinate, number of the effect that it changes, and that effect; None where nothing changes."""
         step = self._step(x, i)
-        if self.held[i]:
-            return step, None, None
-        before, after = self.slots.named(x), self.slots.named(np.where(np.arange(x.size) == i, x + step, x))
-        changed = [n for n, (a, b) in enumerate(zip(before, after, strict=True)) if a.key != b.key]
-        return (step, len(self.beside) + changed[0], after[changed[0]]) if changed else (step, None, None)
+        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
+        own, effect = self.slots.of(n), self.slots.effects[n]
+        before, after = (effect.at_coordinates(y[own]) for y in (x, np.where(np.arange(x.size) == i, x + step, x)))
+        unmoved = self.held[i] or before.key == after.key
+        return (step, None, None) if unmoved else (step, len(self.beside) + n, after)
 
     def _slopes(self, piece: Segment, total: Superposition, moves: Sequence[tuple]) -> np.ndarray:
         """∂e/∂x of one segment; all its columns are filtered together."""

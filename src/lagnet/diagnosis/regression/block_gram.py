@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,25 +43,36 @@ class BlockGrams:
         return float(self.counts[:, joint].sum())
 
 
-def collect_block_grams(problem: Problem, library: Library, pieces: tuple[Segment, ...]) -> BlockGrams:
+def collect_block_grams(
+    problem: Problem, library: Library, pieces: tuple[Segment, ...], known: Mapping[int, np.ndarray] | None = None
+) -> BlockGrams:
     """G_b of all blocks, summed segment by segment, so that only the columns of one segment are in memory.
 
     Of more than `MOST_SAMPLES` samples, segments spread evenly over them are taken.
+
+    Args:
+        problem: gives the columns.
+        library: the hypotheses.
+        pieces: segments, fitted or held out.
+        known: matrices of joints that have been collected from the same columns, by joint.
     """
+    known = known or {}
+    joints = [j for j in range(problem.n_dof) if j not in known]
     pieces = spread_evenly(pieces, MOST_SAMPLES)
     total = sum(p.keep.size for p in pieces)
     reduced_rate = total / max(1e-9, sum(np.ptp(p.time[p.keep]) for p in pieces if p.keep.size > 1))
     length = max(int(BLOCK * reduced_rate / problem.bandwidth), total // MOST_BLOCKS, 8)
     blocks = [np.array_split(np.arange(p.keep.size), max(1, round(p.keep.size / length))) for p in pieces]
-    grams = tuple(np.empty((sum(map(len, blocks)), *2 * (library.width(j) + 1,))) for j in range(problem.n_dof))
+    grams = {j: np.empty((sum(map(len, blocks)), *2 * (library.width(j) + 1,))) for j in joints}
     first = 0
     for piece, rows in zip(pieces, blocks, strict=True):
-        for joint, table in enumerate(library.tables(problem, piece)):
+        for joint, table in zip(joints, library.tables(problem, piece, joints), strict=True):
             _fill(grams[joint][first:], table * piece.counts[:, [joint]], rows)
         first += len(rows)
     counts = [p.counts[b].sum(axis=0) for p, rows in zip(pieces, blocks, strict=True) for b in rows]
     recordings = np.repeat([p.recording for p in pieces], [len(rows) for rows in blocks])
-    return BlockGrams(grams, np.array(counts, dtype=float), recordings)
+    by_joint = {**known, **grams}
+    return BlockGrams(tuple(by_joint[j] for j in range(problem.n_dof)), np.array(counts, dtype=float), recordings)
 
 
 def _fill(grams: np.ndarray, table: np.ndarray, blocks: Sequence[np.ndarray]) -> None:

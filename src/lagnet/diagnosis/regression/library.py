@@ -192,21 +192,23 @@ class Library:
         """Number of columns of a joint, the residual not counted."""
         return sum(self.widths[i] for i in (*self.local[joint], *self.reaching))
 
-    def tables(self, problem: Problem, piece: Segment) -> Iterator[np.ndarray]:
-        """[F X, r] of each joint on one segment, shape (len(keep), width + 1)."""
+    def tables(self, problem: Problem, piece: Segment, joints: Sequence[int] | None = None) -> Iterator[np.ndarray]:
+        """[F X, r] of each of these joints (None: all) on one segment, shape (len(keep), width + 1)."""
+        joints = range(self.n_dof) if joints is None else joints
         residual = problem.residual(piece)
-        columns = self._reduced(problem, piece)
-        for joint in range(self.n_dof):
+        columns = self._reduced(problem, piece, joints)
+        for joint in joints:
             near = [columns[i] for i in self.local[joint]]
             far = [columns[i][:, joint] for i in self.reaching]
             yield np.column_stack([*near, *far, residual[:, joint]])
 
-    def _reduced(self, problem: Problem, piece: Segment) -> dict[int, np.ndarray]:
+    def _reduced(self, problem: Problem, piece: Segment, joints: Sequence[int]) -> dict[int, np.ndarray]:
         """F X_k of each hypothesis, shape (len(keep), k) or (len(keep), dof, k); the piece keeps them if they fit."""
         keys = [self._follows_from(problem, i) for i in range(len(self.hypotheses))]
         out = {i: piece.columns[key] for i, key in enumerate(keys) if key in piece.columns}
         motion = piece.motion(problem)
-        for group in (*self.local, *((i,) for i in self.reaching)):  # filtered together, and not all in memory at once
+        groups = (*(self.local[j] for j in joints), *((i,) for i in self.reaching))
+        for group in groups:  # filtered together, and not all in memory at once
             fresh = [i for i in group if i not in out]
             if fresh:
                 out.update(zip(fresh, self._filtered(problem, piece, motion, fresh), strict=True))

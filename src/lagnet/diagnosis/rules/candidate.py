@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.left_out import LeftOut
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import Identified
@@ -84,6 +85,11 @@ class Candidate:
     def effects(self) -> tuple[NamedEffect, ...]:
         """The selected effects with the parameters of the refit."""
         return self.refit.effects
+
+    @cached_property
+    def left_out(self) -> LeftOut:
+        """The refit, each effect of which may be left out."""
+        return LeftOut(self.problem, self.effects, self.sigma)
 
     @cached_property
     def holdout_gain(self) -> dict[int, HoldoutGain]:

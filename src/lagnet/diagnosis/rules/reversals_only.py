@@ -8,19 +8,20 @@ between reversals, too, and there an effect that is not there makes the error la
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, final
 
 import numpy as np
 
-from lagnet.diagnosis.regression.normal_equations import left_beside
+from lagnet.diagnosis.problem.problem import Segment
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
 from lagnet.diagnosis.unexplained.localisation import near_reversal
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 
-CLEAR = 4.0  # ratio with the others only scaled, beyond which they are not fitted anew
+CLEAR = 2.0  # ratio along the tangent of the fit, beyond which the others are not fitted anew by their exact laws
 
 
 @final
@@ -41,7 +42,7 @@ class ReversalsOnly(RejectionRule):
         for index, effect in zip(candidate.indices, candidate.effects, strict=True):
             if effect.joint is None or effect.joint not in dry or not acts_throughout(effect):
                 continue
-            if _as_they_are(candidate, effect, effect.joint) > CLEAR:
+            if _along_the_tangent(candidate, index, effect.joint) > CLEAR:
                 continue
             ratio = _ratio_between_reversals(candidate, index, effect.joint)
             if ratio <= candidate.limits.least_ratio:
@@ -57,24 +58,24 @@ def acts_throughout(effect: NamedEffect) -> bool:
     return not (turns or law.reaches_all)
 
 
-def _as_they_are(candidate: Candidate, effect: NamedEffect, joint: int) -> float:
-    """The ratio where the torques of the others at the joint may be scaled, and no more."""
-    between = _between(candidate, joint)
-    torques = candidate.torques_at("fit", effect, joint)[between]
-    residual = candidate.residual("fit")[between, joint]
-    return _ratio(left_beside(torques[:, 1:], residual + torques[:, 0]), residual)
+def _along_the_tangent(candidate: Candidate, index: int, joint: int) -> float:
+    """The ratio where the others are fitted anew to first order."""
+    fit = candidate.left_out
+    rows = [_between([piece], joint) for piece in fit.pieces]
+    parts = (fit.without(candidate.indices.index(index)), fit.residuals)
+    return _ratio(*(np.concatenate([e[r, joint] for e, r in zip(part, rows, strict=True)]) for part in parts))
 
 
 def _ratio_between_reversals(candidate: Candidate, index: int, joint: int) -> float:
     """Squared error without the effect over that with it; infinite where a joint does nothing but turn."""
-    between = _between(candidate, joint)
+    between = _between(candidate.problem.fit, joint)
     others = candidate.without(index).effects  # fitted anew: beside the effect they stand for what it gets wrong
     return _ratio(*(candidate.residual("fit", e)[between, joint] for e in (others, None)))
 
 
-def _between(candidate: Candidate, joint: int) -> np.ndarray:
-    """Fitted samples between the changes of direction of a joint, at which it does not rest."""
-    return np.concatenate([~near_reversal(p, joint)[p.keep] & p.counts[:, joint] for p in candidate.problem.fit])
+def _between(pieces: Sequence[Segment], joint: int) -> np.ndarray:
+    """Samples between the changes of direction of a joint, at which it does not rest."""
+    return np.concatenate([~near_reversal(p, joint)[p.keep] & p.counts[:, joint] for p in pieces])
 
 
 def _ratio(without: np.ndarray, with_it: np.ndarray) -> float:

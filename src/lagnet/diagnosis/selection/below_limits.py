@@ -80,5 +80,5 @@ def _rows_below(chosen: Library, problem: Problem, piece: Segment, joint: int, l
     """[F X, r] of a joint on samples that the filter does not mix with any whose torque reaches a level."""
     steps = int(np.ceil(SMEAR / problem.bandwidth / median_step(piece.time)))
     near = maximum_filter1d((np.abs(piece.tau[:, joint]) >= level).astype(np.uint8), 2 * steps + 1) > 0
-    table = list(chosen.tables(problem, piece))[joint]
+    table = next(chosen.tables(problem, piece, [joint]))
     return table[~near[piece.keep] & piece.counts[:, joint]]

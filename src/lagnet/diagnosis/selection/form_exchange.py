@@ -40,8 +40,9 @@ def exchange_forms(problem: Problem, equations: NormalEquations, found: Selectio
     library = equations.library
     fresh = {i: len(library.hypotheses) + n for n, i in enumerate(sharper)}
     wider = library.with_more([*sharper.values()], [library.widths[i] for i in sharper])
-    grams = collect_block_grams(problem, wider, problem.fit)
-    equations = sum_normal_equations(wider, grams, problem.limits)
+    same = {j for j in range(problem.n_dof) if not any(h.law.reaches_all or h.joint == j for h in sharper.values())}
+    known = {j: gram for j, gram in enumerate(equations.grams.joints) if j in same}
+    equations = sum_normal_equations(wider, collect_block_grams(problem, wider, problem.fit, known), problem.limits)
     found = refit_selection(equations, found)
     views = views_of(equations, found)
     local = tuple(_exchanged(view, own, fresh) for view, own in zip(views, found.local, strict=True))

@@ -89,12 +89,11 @@ def _bordered(blocks: np.ndarray, sums: np.ndarray) -> np.ndarray:
         sums: weights of the columns, shape (K + 1, m).
     """
     rows, (size, more) = np.flatnonzero(sums.any(axis=1)), sums.shape
-    beside = blocks[:, :, rows] @ sums[rows]
-    new = np.arange(size - 1, size - 1 + more)
-    old = np.append(np.arange(size - 1), size - 1 + more)
+    beside, last, end = blocks[:, :, rows] @ sums[rows], size - 1, size - 1 + more
     out = np.empty((len(blocks), size + more, size + more))
-    out[:, old[:, None], old] = blocks
-    out[:, old[:, None], new] = beside
-    out[:, new[:, None], old] = beside.transpose(0, 2, 1)
-    out[:, new[:, None], new] = sums[rows].T @ beside[:, rows]
+    out[:, :last, :last], out[:, end, end] = blocks[:, :last, :last], blocks[:, last, last]
+    out[:, :last, end], out[:, end, :last] = blocks[:, :last, last], blocks[:, last, :last]
+    out[:, :last, last:end], out[:, end, last:end] = beside[:, :last], beside[:, last]
+    out[:, last:end, :last], out[:, last:end, end] = beside[:, :last].transpose(0, 2, 1), beside[:, last]
+    out[:, last:end, last:end] = sums[rows].T @ beside[:, rows]
     return out
