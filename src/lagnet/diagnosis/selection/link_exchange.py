@@ -14,7 +14,7 @@ import numpy as np
 
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.cross_validation import NormalEquations, sum_normal_equations
-from lagnet.diagnosis.regression.library import Hypothesis
+from lagnet.diagnosis.regression.library import Hypothesis, Library
 from lagnet.diagnosis.selection.arm_search import Selection, refit_selection
 from lagnet.effects.inertia.link_inertia import in_form, is_mass_alone, mass_alone
 from lagnet.types import inertial_parameters_of
@@ -37,14 +37,14 @@ def exchange_links(problem: Problem, equations: NormalEquations, found: Selectio
         return equations, found
     bodies = inertial_parameters_of(problem.nominal)
     masses = [h for i in library.reaching for h in _masses(library.hypotheses[i], bodies)]
-    wider = _with_masses(equations, masses)
+    wider = _in_folds(equations, masses)
     best = refit_selection(wider, found)
     for i in links:
         best = max((best, *_exchanges(wider, best, i)), key=lambda s: s.score)
     chosen = [i for i in best.arm_wide if i >= len(library.hypotheses)]
     if best.arm_wide == found.arm_wide:
         return equations, found
-    narrower = _with_masses(equations, [wider.library.hypotheses[i] for i in chosen])
+    narrower = _in_blocks(equations, [wider.library.hypotheses[i] for i in chosen])
     index = {i: len(library.hypotheses) + n for n, i in enumerate(chosen)}
     return narrower, refit_selection(narrower, replace(best, arm_wide=tuple(index.get(i, i) for i in best.arm_wide)))
 
@@ -67,18 +67,31 @@ def _masses(h: Hypothesis, bodies: np.ndarray) -> list[Hypothesis]:
     return [replace(h, shape=tuple(sorted(shape.items()))) for shape in mass_alone(bodies[h.joint])[1:]]
 
 
-def _with_masses(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:
-    """The normal equations with those of masses, whose columns are sums of their links' columns."""
-    old = equations.library
-    library = old.with_more(masses, [1] * len(masses))
-    free = {h.place: i for i, h in enumerate(old.hypotheses) if h.law.changes_link and not h.shape}
-    tables = []
-    for joint, blocks in enumerate(equations.grams.joints):
-        sums = np.zeros((old.width(joint) + 1, len(masses)))
+def _in_folds(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:
+    """Sums and folds with those of masses; blocks, which no fit asks for, stay without."""
+    library, sums = _summed(equations.library, masses)
+    total = tuple(_bordered(t[None], s)[0] for t, s in zip(equations.total, sums, strict=True))
+    folds = tuple(_bordered(f, s) for f, s in zip(equations.folds, sums, strict=True))
+    return replace(equations, library=library, total=total, folds=folds)
+
+
+def _in_blocks(equations: NormalEquations, masses: Sequence[Hypothesis]) -> NormalEquations:
+    """The normal equations with those of masses."""
+    library, sums = _summed(equations.library, masses)
+    blocks = tuple(_bordered(b, s) for b, s in zip(equations.grams.joints, sums, strict=True))
+    return sum_normal_equations(library, replace(equations.grams, joints=blocks), equations.limits)
+
+
+def _summed(library: Library, masses: Sequence[Hypothesis]) -> tuple[Library, list[np.ndarray]]:
+    """The library with masses, and for each joint the weights of their links' columns, shape (K + 1, m)."""
+    free = {h.place: i for i, h in enumerate(library.hypotheses) if h.law.changes_link and not h.shape}
+    out = []
+    for joint in range(library.n_dof):
+        sums = np.zeros((library.width(joint) + 1, len(masses)))
         for n, h in enumerate(masses):
-            sums[old.columns_of(joint, [free[h.place]]), [n]] = in_form(np.eye(10), dict(h.shape))[:, 0]
-        tables.append(_bordered(blocks, sums))
-    return sum_normal_equations(library, replace(equations.grams, joints=tuple(tables)), equations.limits)
+            sums[library.columns_of(joint, [free[h.place]]), [n]] = in_form(np.eye(10), dict(h.shape))[:, 0]
+        out.append(sums)
+    return library.with_more(masses, [1] * len(masses)), out
 
 
 def _bordered(blocks: np.ndarray, sums: np.ndarray) -> np.ndarray:
