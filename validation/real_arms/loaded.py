@@ -126,10 +126,16 @@ def in_groups(robot: Any, data: Path) -> dict[str, Any]:
     }
 
 
+def read_halves(robot: Any, folder: Path) -> tuple[list[Recording], list[Recording]]:
+    """The first halves of both recordings, and their second halves."""
+    recordings = [load_recording(folder / f, robot=robot, torque_constant=UR10E.torque_constant) for f in FILES]
+    first, later = zip(*map(halves, recordings), strict=True)
+    return list(first), list(later)
+
+
 def held_apart(robot: Any, folder: Path) -> dict[str, Any]:
     """Second halves held out as recordings of their own, against a model."""
-    recordings = [load_recording(folder / f, robot=robot, torque_constant=UR10E.torque_constant) for f in FILES]
-    first, later = (list(part) for part in zip(*map(halves, recordings), strict=True))
+    first, later = read_halves(robot, folder)
     cpu = time.process_time()
     result = diagnose(first, robot, later, seed=0)
     return {
@@ -148,9 +154,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         robot = calibrated(options.data, Path(scratch))
         folder = options.data / "ur10e_loaded"
-        recordings = [load_recording(folder / f, robot=robot, torque_constant=UR10E.torque_constant) for f in FILES]
+        first, later = read_halves(robot, folder)
         start, cpu = time.perf_counter(), time.process_time()
-        first, later = (list(part) for part in zip(*map(halves, recordings), strict=True))
         result = diagnose(first, robot, seed=0)
         seconds, processor = time.perf_counter() - start, time.process_time() - cpu
         maker = load_any(options.data / UR10E.folder / UR10E.urdf)

@@ -79,6 +79,14 @@ class FollowedSlots(Slots):
         ]
         return (*Slots.named(self, x), *carried)
 
+    def changed(self, x: np.ndarray, i: int, value: float) -> tuple[int, NamedEffect]:
+        """Number of the effect that coordinate i changes, and that effect with another value of it."""
+        share = i - int(self.starts[-1])
+        if share < 0:
+            return Slots.changed(self, x, i, value)
+        n = len(self.effects) + share
+        return n, self.named(np.where(np.arange(x.size) == i, value, x))[n]
+
     def of_bodies(self) -> np.ndarray:
         """No coordinate is one of the ten of a body, shape (k,)."""
         return np.zeros(self.starts[-1] + len(self.bodies), dtype=bool)

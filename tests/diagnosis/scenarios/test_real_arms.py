@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 from tests.reports.diagnosis_report.figures import assert_figures_agree
+from validation.real_arms.loaded import held_apart, lines, read_halves, unseen_errors
 
 from lagnet.diagnosis.diagnose import diagnose
 from lagnet.diagnosis.rules.value_at_bound import distance_to_bound
-from lagnet.diagnosis.writing import holdout_table
+from lagnet.diagnosis.writing import holdout_table, write_diagnosis
 from lagnet.effects.catalogue import effect_named
+from lagnet.models.files.loading import load_any
 from lagnet.recordings.loading.load import load_recording
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import load_description
@@ -78,6 +80,23 @@ def test_ur10e_has_friction_on_every_joint_and_no_payload(ur10e) -> None:
 def test_ur10e_torque_is_predicted_on_motion_not_seen(ur10e) -> None:
     bounds = [0.010, 0.0013, 0.0013, 0.0062, 0.05]  # the second to fourth: with all but a network
     assert np.all(nmse_at_5_hz(ur10e)[:5] <= bounds)
+
+
+@pytest.mark.shared_data
+def test_a_load_mounted_in_two_ways_is_told_in_each_recording(ur10e, shared_data, tmp_path) -> None:
+    write_diagnosis(ur10e, tmp_path)
+    calibrated = load_any(tmp_path / "corrected")
+    first, later = read_halves(calibrated, shared_data / "ur10e_loaded")
+    result = diagnose(first, calibrated, seed=0)
+    unseen, _ = unseen_errors(result, result.corrected.with_layers("named"), later)
+    found = lines(result, unseen)
+    assert all(found.values()), found
+
+
+@pytest.mark.shared_data
+def test_loads_of_all_recordings_are_named_against_a_model_that_was_never_calibrated(shared_data) -> None:
+    found = held_apart(load_description(shared_data / "ur10e" / "ur10e.urdf"), shared_data / "ur10e_loaded")["lines"]
+    assert all(found.values()), found
 
 
 @pytest.mark.shared_data

@@ -43,6 +43,13 @@ class Slots:
     def named(self, x: np.ndarray) -> tuple[NamedEffect, ...]:
         return tuple(e.at_coordinates(x[self.of(n)]) for n, e in enumerate(self.effects))
 
+    def changed(self, x: np.ndarray, i: int, value: float) -> tuple[int, NamedEffect]:
+        """Number of the effect that coordinate i changes, and that effect with another value of it."""
+        n = int(np.searchsorted(self.starts, i, side="right")) - 1
+        own = x[self.of(n)].copy()
+        own[i - int(self.starts[n])] = value
+        return n, self.effects[n].at_coordinates(own)
+
     def of_bodies(self) -> np.ndarray:
         """Whether a coordinate is one of the ten of a body, shape (k,)."""
         return np.repeat([e.is_free_body for e in self.effects], np.diff(self.starts))
@@ -114,18 +121,18 @@ class GaussNewton:
 
     def jacobian(self, x: np.ndarray, free: np.ndarray) -> list[np.ndarray]:
         """∂e/∂x of each segment by finite differences, shape (len(keep), dof, n_free)."""
-        effects = (*self.beside, *self.slots.named(x))
-        sums = [Superposition(motion, effects) for motion in self.motions]
-        moves = [self._moved(x, int(i)) for i in np.flatnonzero(free)]
+        named = self.slots.named(x)
+        sums = [Superposition(motion, (*self.beside, *named)) for motion in self.motions]
+        moves = [self._moved(x, int(i), named) for i in np.flatnonzero(free)]
         return [self._slopes(*pair, moves) for pair in zip(self.pieces, sums, strict=True)]
 
-    def _moved(self, x: np.ndarray, i: int) -> tuple[float, int | None, NamedEffect | None]:
+    def _moved(
+        self, x: np.ndarray, i: int, named: Sequence[NamedEffect]
+    ) -> tuple[float, int | None, NamedEffect | None]:
         """Step of a coordinate, number of the effect that it changes, and that effect; None where nothing changes."""
         step = self._step(x, i)
-        n = int(np.searchsorted(self.slots.starts, i, side="right")) - 1
-        own, effect = self.slots.of(n), self.slots.effects[n]
-        before, after = (effect.at_coordinates(y[own]) for y in (x, np.where(np.arange(x.size) == i, x + step, x)))
-        unmoved = self.held[i] or before.key == after.key
+        n, after = self.slots.changed(x, i, x[i] + step)
+        unmoved = self.held[i] or after.key == named[n].key
         return (step, None, None) if unmoved else (step, len(self.beside) + n, after)
 
     def _slopes(self, piece: Segment, total: Superposition, moves: Sequence[tuple]) -> np.ndarray:
