@@ -96,6 +96,7 @@ def test_a_worn_servo_is_unusual_beside_the_fixed_laws(bench):
     assert bench.set.is_unusual(2.0 * np.array(bench.set.left))
 
 
+@pytest.mark.slow
 def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, scheduler):
     folder = bench.folder / "fleet"
     write_recording(bench.first, folder / "calibration.csv")
@@ -109,6 +110,7 @@ def test_a_growing_friction_is_told_from_the_recording_on_that_shows_it(bench, s
     assert found.analysis.events[0].date == START + timedelta(days=28)
 
 
+@pytest.mark.slow
 def test_a_fault_that_the_calibration_did_not_show_is_followed_from_its_first_recording_on(bench, scheduler):
     folder = bench.folder / "delayed"
     write_recording(bench.first, folder / "calibration.csv")
