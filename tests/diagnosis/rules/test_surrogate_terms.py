@@ -109,6 +109,13 @@ def test_friction_that_changes_along_the_path_is_among_the_plain_terms(table) ->
     assert left(worn) < 0.01
 
 
+@pytest.mark.parametrize(("fitted", "held_out", "asked"), [(0.2, 0.05, True), (0.05, 0.2, True), (0.05, 0.05, False)])
+def test_a_joint_is_asked_that_is_unexplained_in_the_fit_or_held_out(fitted, held_out, asked) -> None:
+    mismatch = np.random.default_rng(0).normal(size=(500, 1))
+    sides = [[mismatch, share * mismatch] for share in (fitted, held_out)]
+    assert surrogate_terms.SurrogateTerms()._is_unexplained(sides, 0, 1e-3, 1.0) == asked
+
+
 @pytest.fixture
 def bristles(arm, plant, at):
     """Presliding friction fitted to a law of some joint."""

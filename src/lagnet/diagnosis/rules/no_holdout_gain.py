@@ -1,4 +1,8 @@
-"""Effects that do not lower the error of recordings that were not fitted."""
+"""Effects that do not lower the error of recordings that were not fitted, alone or two together.
+
+A cable that goes taut is fitted by a spring and a wrong link, which cancel each other where it is slack. In held-out
+motion where it is slack all the time each of them makes good the error of the other, and neither is needed.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,16 @@ from typing import ClassVar, final
 
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
+from lagnet.diagnosis.selection.holdout_gain import opposed_pairs, ratio_without_pair
 
 
 @final
 @dataclass(frozen=True)
 class NoHoldoutGain(RejectionRule):
-    """Held-out nMSE without the effect over that with it, the others refitted, exceeds the shared ratio."""
+    """Held-out nMSE without the effect over that with it, the others refitted, exceeds the shared ratio.
+
+    So does that without two effects whose torques oppose each other, at some joint.
+    """
 
     name: ClassVar[str] = "no_holdout_gain"
     statement: ClassVar[str] = "the held-out error without the effect is larger than with it"
@@ -22,8 +30,23 @@ class NoHoldoutGain(RejectionRule):
     def rejected(self, candidate: Candidate) -> tuple[Rejection, ...]:
         ratios = {i: p.without / max(p.with_it, 1e-300) for i, p in candidate.holdout_gain.items()}
         useless = sorted((i for i, r in ratios.items() if r <= candidate.limits.least_ratio), key=lambda i: ratios[i])
-        return tuple(self._rejection(candidate, i, ratios[i]) for i in useless)
+        return tuple(self._rejection(candidate, i, ratios[i], "it") for i in useless) or self._pair(candidate)
 
-    def _rejection(self, candidate: Candidate, index: int, ratio: float) -> Rejection:
-        detail = f"without it the held-out error is {ratio:.4g} times that with it"
+    def _pair(self, candidate: Candidate) -> tuple[Rejection, ...]:
+        """Both of the first two effects that are of use to each other alone."""
+        fitted, unseen, found = candidate.equations, candidate.holdout_equations, candidate.selection
+        names = candidate.library.hypotheses
+        for pair in opposed_pairs(unseen, found):
+            if any(candidate.holdout_gain[i].silent for i in pair):
+                continue
+            ratio = ratio_without_pair(fitted, unseen, found, pair, candidate.sigma)
+            if ratio <= candidate.limits.least_ratio:
+                others = (names[k].effect for k in reversed(pair))
+                return tuple(
+                    self._rejection(candidate, i, ratio, f"it and {o}") for i, o in zip(pair, others, strict=True)
+                )
+        return ()
+
+    def _rejection(self, candidate: Candidate, index: int, ratio: float, without: str) -> Rejection:
+        detail = f"without {without} the held-out error is {ratio:.4g} times that with {without}"
         return self.rejection(candidate, index, ratio, candidate.limits.least_ratio, detail)

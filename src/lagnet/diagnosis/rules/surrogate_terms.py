@@ -109,9 +109,9 @@ class SurrogateTerms(RejectionRule):
         return None
 
     def _is_unexplained(self, torques: list[list[np.ndarray]], joint: int, noise: float, least: float) -> bool:
-        """Whether a joint has a residual above the noise and the least share, in the fit and held out."""
+        """Whether a joint has a residual above the noise and the least share, in the fit or held out."""
         shares = [_shares(side, joint, noise, least) for side in torques]
-        return all(above and share > self.little for share, above in shares)
+        return any(above and share > self.little for share, above in shares)
 
     def _explains_elsewhere(self, torques: list[list[np.ndarray]], k: int, noise: np.ndarray, least: float) -> bool:
         """Whether the effect explains some joint with a negligible residual, in the fit and held out."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection, take_off
 from lagnet.diagnosis.selection.arm_search import Selection
+
+OPPOSED = (
+    0.5  # s: cosine of two torques, with the other sign, from which on one may stand for what the other gets wrong
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +91,29 @@ def _part(
     return HoldoutGain(
         float(np.mean(without[at])), float(np.mean(with_all[at])), share, tuple(map(int, at)), shares, silent, powers
     )
+
+
+def ratio_without_pair(
+    equations: NormalEquations, unseen: NormalEquations, found: Selection, pair: tuple[int, int], sigma: np.ndarray
+) -> float:
+    """Held-out error without two effects over that with them, the others refitted: the largest of their joints."""
+    fewer = fit_selection(equations, [i for i in found.indices if i not in pair], sigma, folds=False)
+    with_all, without = error_of(found.fit, unseen), error_of(fewer, unseen)
+    at = [j for j in range(len(without)) if any(i in unseen.library.slots[j] for i in pair)]
+    return float(np.max(without[at] / np.maximum(with_all[at], 1e-300)))
+
+
+def opposed_pairs(unseen: NormalEquations, found: Selection) -> Iterator[tuple[int, int]]:
+    """Pairs of effects whose held-out torques oppose each other at a joint: Σ τ_i τ_k < −s √(Σ τ_i² Σ τ_k²)."""
+    opposed = set()
+    for joint, total in enumerate(unseen.total):
+        own = [i for i in found.indices if i in unseen.library.slots[joint]]
+        parts = [(unseen.columns(joint, [i]), found.fit.coefficients[i]) for i in own]
+        products = np.array([[s @ total[np.ix_(a, b)] @ t for b, t in parts] for a, s in parts])
+        size = np.sqrt(np.diag(products)) if own else np.zeros(0)
+        against = np.argwhere(np.triu(products < -OPPOSED * np.outer(size, size), 1))
+        opposed |= {(own[i], own[k]) for i, k in against}
+    yield from sorted(opposed)
 
 
 def _nominal_nmse(equations: NormalEquations, scale: np.ndarray) -> np.ndarray:
