@@ -25,7 +25,9 @@ def _motion() -> Motion:
 @pytest.mark.parametrize("change", [BODY, -BODY, np.r_[0.0, BODY[1:]]])
 def test_the_torque_of_a_body_is_that_of_its_regressor(joint, change) -> None:
     expected = _motion().link_regressor(joint) @ change
-    assert _motion().body_torque(joint, change) == pytest.approx(expected, abs=IDENTITY)
+    motion = _motion()
+    for _ in range(3):  # by Newton-Euler, then by columns that are kept
+        assert motion.body_torque(joint, change) == pytest.approx(expected, abs=IDENTITY)
 
 
 def test_the_weight_of_a_body_is_that_of_its_regressor() -> None:

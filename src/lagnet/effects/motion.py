@@ -92,13 +92,18 @@ class Motion:
     def body_torque(self, joint: int, parameters: np.ndarray) -> np.ndarray:
         """Torque of a body behind one joint, shape (n, dof) [N m]: its regressor times its ten inertial parameters.
 
-        Where the regressor is not known yet, by Newton–Euler.
+        Where the regressor is not known yet, by Newton–Euler; a body that is asked for again has its own from then on.
         """
         if "links" in self.cache or not isinstance(self.model, Robot):
             return np.asarray(self.link_regressor(joint) @ parameters)
+        model, asked = self.model, ("body", joint)
+        if asked in self.cache:
+            own = self.remembered(("columns", joint), lambda: model.link_regressor(joint, self.q, self.v, self.a))
+            return np.asarray(own @ parameters)
+        self.cache[asked] = True
         change = np.zeros((self.n_dof, parameters.size))
         change[joint] = parameters
-        return torque_of_change(self.model, change, self.q, self.v, self.a)
+        return torque_of_change(model, change, self.q, self.v, self.a)
 
     def body_alone(self, joint: int, parameters: np.ndarray) -> Robot | None:
         """The arm with one body behind a joint and no other, without rotors.

@@ -17,6 +17,7 @@ from lagnet.diagnosis.problem.intervals import EventInterval, fills
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.problem.residuals import residual_by_recording
 from lagnet.diagnosis.transients.detection import Scan
+from lagnet.diagnosis.transients.least_left import may_have_load
 from lagnet.diagnosis.transients.separation import Separated, separate
 from lagnet.diagnosis.transients.transient import Transient
 from lagnet.effects.catalogue import effect_named
@@ -93,6 +94,8 @@ def _with_own_loads(
     if len({p.recording for p in problem.fit}) < 2 or not whole:
         return [], None
     beside = tuple(e for e in effects if effect_named(e.effect).of_motion_alone)
+    if not may_have_load(problem, [s.recording for s in whole], beside, scan.power):
+        return [], None
     scan = replace(scan, events=tuple(whole))
     parts = separate(problem, beside, np.sqrt(scan.power), scan)
     if len(_loads_of(parts)) < len(whole):  # where many recordings have a load, what is usual is not the noise
