@@ -15,7 +15,8 @@ import numpy as np
 from scipy.stats import t as student
 
 from lagnet.diagnosis.estimation.delta_method import parameter_jacobian
-from lagnet.diagnosis.estimation.gauss_newton import GaussNewton, Slots, spread
+from lagnet.diagnosis.estimation.gauss_newton import GaussNewton, spread
+from lagnet.diagnosis.estimation.slots import Slots
 from lagnet.diagnosis.problem.problem import Problem, pose_problem
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.inertia.link_inertia import LinkInertia

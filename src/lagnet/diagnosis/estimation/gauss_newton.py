@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lagnet.diagnosis.estimation.slots import Slots
 from lagnet.diagnosis.estimation.superposition import Superposition
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.diagnosis.regression.block_gram import BLOCK
@@ -28,43 +29,6 @@ SHRINKS = (1.0, 0.5, 0.25, 0.1, 0.03)  # of a step, until one lowers the error
 MOST_SAMPLES = 60_000  # of the full rate: longer recordings are refitted on segments spread over them
 DIFFERENCE = 1e-4  # relative step of the derivatives by finite differences
 NOT_SAID = 1e6  # standard deviation reported of a coordinate that recordings do not determine, in its unit
-
-
-@dataclass(frozen=True, eq=False)
-class Slots:
-    """Where each effect's coordinates stand in the vector of all."""
-
-    effects: tuple[NamedEffect, ...]
-    starts: np.ndarray
-
-    def of(self, n: int) -> slice:
-        return slice(int(self.starts[n]), int(self.starts[n + 1]))
-
-    def named(self, x: np.ndarray) -> tuple[NamedEffect, ...]:
-        return tuple(e.at_coordinates(x[self.of(n)]) for n, e in enumerate(self.effects))
-
-    def changed(self, x: np.ndarray, i: int, value: float) -> tuple[int, NamedEffect]:
-        """Number of the effect that coordinate i changes, and that effect with another value of it."""
-        n = int(np.searchsorted(self.starts, i, side="right")) - 1
-        own = x[self.of(n)].copy()
-        own[i - int(self.starts[n])] = value
-        return n, self.effects[n].at_coordinates(own)
-
-    def of_bodies(self) -> np.ndarray:
-        """Whether a coordinate is one of the ten of a body, shape (k,)."""
-        return np.repeat([e.is_free_body for e in self.effects], np.diff(self.starts))
-
-    def chosen(self) -> np.ndarray:
-        """Whether a coordinate stands at the value of a special case, shape (k,)."""
-        return np.concatenate([np.zeros(0, dtype=bool), *(e.chosen() for e in self.effects)])
-
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        return self._bounds
-
-    @cached_property
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        pairs = [e.coordinate_bounds() for e in self.effects]
-        return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])
 
 
 def spread(pieces: Sequence[Segment], most: int = MOST_SAMPLES) -> tuple[Segment, ...]:

@@ -10,8 +10,9 @@ from scipy.linalg import block_diag
 from scipy.stats import t as student
 
 from lagnet.diagnosis.estimation.delta_method import correlations_of, parameter_jacobian
-from lagnet.diagnosis.estimation.gauss_newton import Slots, start_gauss_newton
+from lagnet.diagnosis.estimation.gauss_newton import start_gauss_newton
 from lagnet.diagnosis.estimation.physical_bodies import with_physical_bodies
+from lagnet.diagnosis.estimation.slots import Slots
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.models.corrected.named_effects import NamedEffect
 
