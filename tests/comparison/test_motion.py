@@ -18,6 +18,8 @@ from lagnet.recordings.writing import write_recording
 from lagnet.rigid_body.random_arm import random_arm
 from lagnet.servos.parameters import law_vector
 
+pytestmark = pytest.mark.xdist_group("comparison of motion")  # what they share is made once
+
 ARM = random_arm(2, seed=3, kinds=("revolute",), fixed=False)
 TRUE = {"kp": 18.0, "kd": 0.5, "viscous": 0.6, "coulomb": 0.05, "rotor": 0.03}
 

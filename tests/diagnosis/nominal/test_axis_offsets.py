@@ -13,7 +13,7 @@ from lagnet.rigid_body.descriptions.urdf import read_urdf
 from lagnet.rigid_body.descriptions.xml_files import checked_xml
 from lagnet.rigid_body.robot import Robot
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("axis offsets")]  # what they share is made once
 
 APART = 0.08  # the axes of elbow and wrist [m]
 MISSED = np.full(3, 1e-4)  # [N m]

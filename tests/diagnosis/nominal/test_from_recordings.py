@@ -14,7 +14,7 @@ from lagnet.models.serial_chain.model import SerialChain
 from lagnet.models.serial_chain.settings import SerialChainSettings
 from lagnet.rigid_body.random_arm import random_arm
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("from recordings")]  # what they share is made once
 
 VISCOUS, DRY, ROTOR = 0.8, 2.0, 0.3  # [N m s/rad], [N m], [kg m²]
 LEFT_OUT = 1.5  # [N m s/rad], of the real arm alone

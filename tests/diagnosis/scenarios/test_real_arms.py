@@ -19,7 +19,7 @@ from lagnet.recordings.loading.load import load_recording
 from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import load_description
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("real arms")]  # what they share is made once
 
 TORQUE_CONSTANT = (14.87, 13.26, 11.13, 10.62, 11.03, 11.47)  # [N m/A], the authors' identification
 DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction", "presliding_hysteresis"}

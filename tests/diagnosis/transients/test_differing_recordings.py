@@ -14,7 +14,7 @@ from lagnet.effects.inertia.payload import INERTIA
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.recordings.conditioning.condition import condition
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("differing recordings")]  # what they share is made once
 
 MASS = 1.5  # [kg]
 NEAR = 0.05  # relative error of a mass
