@@ -27,7 +27,7 @@ SHARED = (
 BEHIND_STEPS = (
     "lagnet.diagnosis.nominal.mounting:mounting_of",
     "lagnet.diagnosis.estimation.refit:refit",
-    "lagnet.diagnosis.estimation.misspecification:interval_errors",
+    "lagnet.diagnosis.estimation.intervals.misspecification:interval_errors",
     "lagnet.diagnosis.transients.detection:detect_events",
     "lagnet.diagnosis.identified.fit:identify",
 )

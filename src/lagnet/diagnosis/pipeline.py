@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lagnet.diagnosis.estimation.friction_at_rest import friction_at_rest
-from lagnet.diagnosis.estimation.misspecification import interval_errors, widened, with_convention
+from lagnet.diagnosis.estimation.intervals.misspecification import interval_errors, widened, with_convention
+from lagnet.diagnosis.estimation.intervals.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.estimation.refit import Refit
 from lagnet.diagnosis.estimation.special_case import with_special_cases
-from lagnet.diagnosis.estimation.unselected_laws import shifts_beside_unselected, short_of_absence
 from lagnet.diagnosis.exchanged_bodies import with_links_alike, with_real_bodies
 from lagnet.diagnosis.exchanged_gains import without_wide_gains
 from lagnet.diagnosis.free_bodies import (

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -96,9 +97,10 @@ class FollowedSlots(Slots):
         """Whether a coordinate stands at the value of a special case, shape (k,); no share does."""
         return np.append(Slots.chosen(self), np.zeros(len(self.bodies), dtype=bool))
 
+    @cached_property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds; shares have none."""
-        lower, upper = Slots.bounds(self) if self.effects else (np.zeros(0), np.zeros(0))
+        lower, upper = super().bounds if self.effects else (np.zeros(0), np.zeros(0))
         free = np.full(len(self.bodies), np.inf)
         return np.append(lower, -free), np.append(upper, free)
 
@@ -126,7 +128,7 @@ def fit_set(recording: Recording, nominal: Any, tracked: TrackedSet) -> FixedFit
     for _ in range(ROUNDS):
         sigma = np.maximum(_left(problem, slots.named(x)), 1e-6 * problem.scale + 1e-12)
         work = GaussNewton(problem, spread(problem.fit), sigma, slots, slots.chosen())
-        x = work.descend(np.clip(x, *slots.bounds()), np.ones(x.size, dtype=bool))
+        x = work.descend(np.clip(x, *slots.bounds), np.ones(x.size, dtype=bool))
     effects = slots.named(x)
     rows = _rows(work, x, tracked, problem) if x.size else ()
     return FixedFit(effects, rows, _load(problem, effects), _left(problem, effects))

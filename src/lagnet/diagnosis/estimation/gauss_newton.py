@@ -114,7 +114,7 @@ class GaussNewton:
     def _step(self, x: np.ndarray, i: int) -> float:
         """By how much a coordinate moves, away from its upper bound."""
         step = DIFFERENCE * max(abs(x[i]), 1e-2)
-        return -step if x[i] + step > self.slots.bounds()[1][i] else step
+        return -step if x[i] + step > self.slots.bounds[1][i] else step
 
     def descend(self, x: np.ndarray, free: np.ndarray) -> np.ndarray:
         """Bounded Gauss–Newton with step halving; parameters that are not free stay.
@@ -139,14 +139,14 @@ class GaussNewton:
         return x
 
     def _bounded(self, x: np.ndarray, free: np.ndarray, gram: np.ndarray, moment: np.ndarray) -> np.ndarray:
-        lower, upper = (b[free] for b in self.slots.bounds())
+        lower, upper = (b[free] for b in self.slots.bounds)
         return bounded_step(gram, -moment, lower - x[free], upper - x[free])
 
     def _lower(
         self, x: np.ndarray, free: np.ndarray, step: np.ndarray, error: float, shrinks: Sequence[float]
     ) -> tuple[np.ndarray, list[np.ndarray]] | None:
         """The first of the shrunk steps that lowers the error, with its residuals; None where none does."""
-        lower, upper = (b[free] for b in self.slots.bounds())
+        lower, upper = (b[free] for b in self.slots.bounds)
         for shrink in shrinks:
             trial = x.copy()
             trial[free] = np.clip(x[free] + shrink * step, lower, upper)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from lagnet.diagnosis.estimation.gauss_newton import start_gauss_newton
-from lagnet.diagnosis.estimation.superposition import Superposition
+from lagnet.diagnosis.estimation.superposition import Superposition, reduced
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.regression.normal_equations import bounded_step, normal
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -42,15 +42,12 @@ class LeftOut:
             return alone
         jacobians = [j[..., others] for j in self._jacobians]
         moment = normal(jacobians, alone)[1]
-        lower, upper = (b[others] - self._x[others] for b in self._work.slots.bounds())
+        lower, upper = (b[others] - self._x[others] for b in self._work.slots.bounds)
         step = bounded_step(self._gram[np.ix_(others, others)], -moment, lower, upper)
         return [e + j @ step for e, j in zip(alone, jacobians, strict=True)]
 
     def _changed(self, k: int, n: int) -> np.ndarray:
         """Residuals of one segment without effect n, the others as they are."""
-        piece, change, out = self.pieces[k], self._sums[k].without(n), self.residuals[k].copy()
-        if change:
-            joints = list(change)
-            torque = self._work.problem.reduce(piece, np.column_stack([change[j] for j in joints]))
-            out[:, joints] -= torque * piece.counts[:, joints] / self._work.sigma[joints]
-        return out
+        work, piece = self._work, self.pieces[k]
+        torque = reduced(work.problem, piece, self._sums[k].without(n))
+        return self.residuals[k] - torque * piece.counts / work.sigma

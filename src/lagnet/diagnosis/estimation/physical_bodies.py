@@ -26,7 +26,7 @@ class _Tangent:
         """The least squares of the free coordinates within their bounds, the others as they are in x."""
         if not free.any():
             return x
-        lower, upper = (b[free] for b in self.work.slots.bounds())
+        lower, upper = (b[free] for b in self.work.slots.bounds)
         slope = (self.moment + self.gram @ (x - self.point))[free]
         out = x.copy()
         step = bounded_step(self.gram[np.ix_(free, free)], -slope, lower - x[free], upper - x[free])

@@ -76,7 +76,7 @@ def refit(
         return Refit((), (), np.zeros((0, 0)))
     work, start = start_gauss_newton(problem, effects, sigma, choices_stay, beside)
     slots = work.slots
-    x = work.descend(np.clip(start, *slots.bounds()), np.ones(start.size, dtype=bool))
+    x = work.descend(np.clip(start, *slots.bounds), np.ones(start.size, dtype=bool))
     x = with_physical_bodies(work, x)
     covariance, freedom = work.covariance(x)
     return Refit(slots.named(x), _intervals(slots, x, covariance, freedom), correlations_of(covariance))

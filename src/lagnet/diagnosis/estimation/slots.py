@@ -45,11 +45,8 @@ class Slots:
         """Whether a coordinate stands at the value of a special case, shape (k,)."""
         return np.concatenate([np.zeros(0, dtype=bool), *(e.chosen() for e in self.effects)])
 
+    @cached_property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper bounds, shape (k,) each."""
-        return self._bounds
-
-    @cached_property
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         pairs = [e.coordinate_bounds() for e in self.effects]
         return np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs])

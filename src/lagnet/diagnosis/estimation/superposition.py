@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from lagnet.diagnosis.estimation.moved_link import MovedLink
+from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.catalogue import effect_named
 from lagnet.effects.effect import STAGES, Stage
 from lagnet.effects.motion import Motion
@@ -145,6 +146,14 @@ class Superposition:
         if not effect_named(effect.effect).uses_load or effect.joint not in change:
             return {}
         return _minus(effect.added_at(self._motion.with_load(_plus(part.seen, change))), part.added)
+
+
+def reduced(problem: Problem, piece: Segment, change: Change) -> np.ndarray:
+    """F Δτ of a change along a segment, shape (len(keep), dof) [N m]."""
+    out = np.zeros((piece.keep.size, problem.n_dof))
+    if change:
+        out[:, list(change)] = problem.reduce(piece, np.column_stack(list(change.values())))
+    return out
 
 
 def _products(motion: Motion, effects: Sequence[NamedEffect]) -> np.ndarray | float:

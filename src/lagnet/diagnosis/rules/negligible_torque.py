@@ -9,8 +9,8 @@ from typing import ClassVar, final
 import numpy as np
 
 from lagnet.diagnosis.estimation.gauss_newton import spread
-from lagnet.diagnosis.estimation.superposition import Superposition
-from lagnet.diagnosis.problem.problem import Problem, Segment
+from lagnet.diagnosis.estimation.superposition import Superposition, reduced
+from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.needed_body import is_open
 from lagnet.diagnosis.rules.rule import Rejection, RejectionRule
@@ -72,7 +72,7 @@ class NegligibleTorque(RejectionRule):
         nominal = _mean_square([problem.residual(p) for p in pieces])
         out = []
         for n, effect in enumerate(effects):
-            parts = [_at_all(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
+            parts = [reduced(problem, p, s.without(n)) for p, s in zip(pieces, sums, strict=True)]
             least = problem.limits.least_power_of(effect_named(effect.effect), problem.scale**2, nominal, left)
             out.append(float(np.max(_mean_square(parts) / least)))
         return out
@@ -89,14 +89,6 @@ def special_case(candidate: Candidate, index: int) -> tuple[int, ...]:
     others = {*candidate.selection.local[chosen.joint]} - {index}
     simple = (i for i in library.local[chosen.joint] if library.hypotheses[i].effect in chosen.law.contains)
     return tuple(i for i in simple if library.may_stand_beside(i, others))[:1]
-
-
-def _at_all(problem: Problem, piece: Segment, change: dict[int, np.ndarray]) -> np.ndarray:
-    """F Δτ of a change of some joints' torque, shape (len(keep), dof)."""
-    out = np.zeros((piece.keep.size, problem.n_dof))
-    if change:
-        out[:, list(change)] = problem.reduce(piece, np.column_stack(list(change.values())))
-    return out
 
 
 def _mean_square(parts: list[np.ndarray]) -> np.ndarray:

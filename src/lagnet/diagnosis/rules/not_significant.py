@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, final
 
-from lagnet.diagnosis.estimation.misspecification import interval_errors, widened
+from lagnet.diagnosis.estimation.intervals.misspecification import interval_errors, widened
 from lagnet.diagnosis.rules.candidate import Candidate
 from lagnet.diagnosis.rules.needed_body import is_open
 from lagnet.diagnosis.rules.negligible_torque import NegligibleTorque

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -103,7 +103,7 @@ def ratio_without_pair(
     return float(np.max(without[at] / np.maximum(with_all[at], 1e-300)))
 
 
-def opposed_pairs(unseen: NormalEquations, found: Selection) -> Iterator[tuple[int, int]]:
+def opposed_pairs(unseen: NormalEquations, found: Selection) -> list[tuple[int, int]]:
     """Pairs of effects whose held-out torques oppose each other at a joint: Σ τ_i τ_k < −s √(Σ τ_i² Σ τ_k²)."""
     opposed = set()
     for joint, total in enumerate(unseen.total):
@@ -113,7 +113,7 @@ def opposed_pairs(unseen: NormalEquations, found: Selection) -> Iterator[tuple[i
         size = np.sqrt(np.diag(products)) if own else np.zeros(0)
         against = np.argwhere(np.triu(products < -OPPOSED * np.outer(size, size), 1))
         opposed |= {(own[i], own[k]) for i, k in against}
-    yield from sorted(opposed)
+    return sorted(opposed)
 
 
 def _nominal_nmse(equations: NormalEquations, scale: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.estimation.misspecification import Intervals
+from lagnet.diagnosis.estimation.intervals.misspecification import Intervals
 from lagnet.diagnosis.estimation.refit import Refit, refit
 from lagnet.diagnosis.problem.intervals import EventInterval, fills, set_aside
 from lagnet.diagnosis.problem.problem import OVERSAMPLING, Problem

@@ -9,8 +9,8 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.diagnose import diagnose
-from lagnet.diagnosis.estimation.data_subsets import parts_of, travel
-from lagnet.diagnosis.estimation.misspecification import misspecification_errors
+from lagnet.diagnosis.estimation.intervals.data_subsets import parts_of, travel
+from lagnet.diagnosis.estimation.intervals.misspecification import misspecification_errors
 from lagnet.diagnosis.estimation.refit import refit
 from lagnet.models.corrected.model import NamedEffect
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from lagnet.diagnosis.estimation.misspecification import Influence, Intervals, Linear, as_it_is, by_effect
+from lagnet.diagnosis.estimation.intervals.misspecification import Influence, Intervals, Linear, as_it_is, by_effect
 from lagnet.diagnosis.estimation.refit import tangent_at
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.effects.catalogue import effect_named

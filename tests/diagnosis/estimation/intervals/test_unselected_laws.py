@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from tests.diagnosis.posed import pose
 
-from lagnet.diagnosis.estimation.refit import refit
-from lagnet.diagnosis.estimation.unselected_laws import (
+from lagnet.diagnosis.estimation.intervals.unselected_laws import (
     USUAL,
     shifts_beside_unselected,
     short_of_absence,
     unselected_laws,
 )
+from lagnet.diagnosis.estimation.refit import refit
 from lagnet.effects.catalogue import effect_named
 from lagnet.models.corrected.named_effects import NamedEffect
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from lagnet.diagnosis.estimation.long_run import long_run_excess
+from lagnet.diagnosis.estimation.intervals.long_run import long_run_excess
 
 
 def half_width(blocks: np.ndarray, counts: list[int]) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lagnet.diagnosis.estimation.misspecification import _slower
+from lagnet.diagnosis.estimation.intervals.misspecification import _slower
 
 PROBLEM: Any = SimpleNamespace(rate=100.0, bandwidth=8.0)  # [Hz]
 

@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from scipy.stats import t as student
 
-from lagnet.diagnosis.estimation.data_subsets import parts_of
 from lagnet.diagnosis.estimation.gauss_newton import blocks_of
-from lagnet.diagnosis.estimation.long_run import long_run_excess
+from lagnet.diagnosis.estimation.intervals.data_subsets import parts_of
+from lagnet.diagnosis.estimation.intervals.long_run import long_run_excess
 from lagnet.diagnosis.estimation.refit import Tangent, tangent_at
 from lagnet.diagnosis.problem.problem import Problem, Segment
 from lagnet.diagnosis.regression.normal_equations import inverse, normal
