@@ -43,6 +43,19 @@ def test_torque_is_the_sum_of_its_terms(robot):
 
 @given(arms)
 @few
+def test_torque_derivatives_are_those_of_the_torque(robot):
+    q, v, a = motion(robot)
+    found = robot.torque_derivatives(q, v, a)
+    for joint, step in enumerate(STEP * np.eye(robot.n_dof)):
+        for k, (dq, dv, da) in enumerate(step * np.eye(3)[:, :, None]):
+            ahead, behind = (robot.inverse_dynamics(q + s * dq, v + s * dv, a + s * da) for s in (1.0, -1.0))
+            expected = (ahead - behind) / (2 * STEP)
+            assert np.abs(found[k, :, :, joint] - expected).max() < DIFFERENCE * scale(ahead)
+    assert np.abs(found[2] - robot.mass_matrix(q)).max() < IDENTITY * scale(found[2])
+
+
+@given(arms)
+@few
 def test_mass_matrix_is_symmetric_and_positive_definite(robot):
     mass = robot.mass_matrix(motion(robot)[0])
     assert np.array_equal(mass, mass.transpose(0, 2, 1))

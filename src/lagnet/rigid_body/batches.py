@@ -37,6 +37,15 @@ def inverse_dynamics(model: Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) 
     return np.ascontiguousarray(torque.reshape(model.nv, len(q)).T)  # one joint or one sample comes back flat
 
 
+def torque_derivatives(model: Model, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """∂τ/∂q, ∂τ/∂v and ∂τ/∂a of the recursive Newton–Euler algorithm, shape (3, n, dof, dof)."""
+    data, derivatives = model.createData(), pin.computeRNEADerivatives
+    out = np.empty((3, len(q), model.nv, model.nv))
+    for i in range(len(q)):
+        out[0, i], out[1, i], out[2, i] = derivatives(model, data, q[i], v[i], a[i])
+    return out
+
+
 def gravity_torque(model: Model, q: np.ndarray) -> np.ndarray:
     """Torque that holds the arm still, shape (n, dof)."""
     data, gravity, out = model.createData(), pin.computeGeneralizedGravity, np.empty(q.shape)

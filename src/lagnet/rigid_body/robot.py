@@ -87,6 +87,13 @@ class Robot:
         """Joint torque [N m] (force [N] on prismatic joints) that gives acceleration a at (q, v), shape (n, dof)."""
         return batches.inverse_dynamics(self._model, *self._batch(q=q, v=v, a=a))
 
+    def torque_derivatives(self, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
+        """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M, shape (3, n, dof, dof): torque of a row's joint per motion of a column's joint.
+
+        Source: Carpentier and Mansard, Analytical derivatives of rigid body dynamics algorithms, RSS 2018.
+        """
+        return batches.torque_derivatives(self._model, *self._batch(q=q, v=v, a=a))
+
     def forward_dynamics(self, q: Trajectory, v: Trajectory, tau: Trajectory) -> Trajectory:
         """Acceleration [rad/s²] that torque tau gives at (q, v), shape (n, dof).
 
