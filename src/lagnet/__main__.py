@@ -18,6 +18,7 @@ COLLECTED = ("__del__", "_xla_gc_callback")  # called by the garbage collector, 
 
 def run() -> NoReturn:
     """Runs the command line of this process and ends it with the exit code, see `lagnet.cli.main`."""
+    os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")  # large arrays live for milliseconds: huge pages cost more
     try:
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGALRM, control_c)

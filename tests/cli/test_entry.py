@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import signal
 import subprocess
 import sys
@@ -100,3 +101,13 @@ def test_control_c_while_garbage_is_collected_is_not_lost() -> None:
 def _dropped(things: list) -> None:
     things.clear()
     signal.pause()  # the question is put again here
+
+
+@pytest.mark.parametrize(("given", "expected"), [({}, "0"), ({"NUMPY_MADVISE_HUGEPAGE": "1"}, "1")])
+def test_huge_pages_are_off_unless_the_user_asks_for_them(given: dict[str, str], expected: str) -> None:
+    code = "import os, sys, lagnet.cli.main as m\nassert 'numpy' not in sys.modules\n"
+    code += "m.main = lambda: print(os.environ['NUMPY_MADVISE_HUGEPAGE']) or 0\n"
+    code += "import lagnet.__main__ as entry\nentry.run()"
+    environment = {k: v for k, v in os.environ.items() if k != "NUMPY_MADVISE_HUGEPAGE"} | given
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment)
+    assert (done.stdout, done.stderr) == (expected + "\n", "")
