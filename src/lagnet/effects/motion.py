@@ -92,18 +92,24 @@ class Motion:
     def body_torque(self, joint: int, parameters: np.ndarray) -> np.ndarray:
         """Torque of a body behind one joint, shape (n, dof) [N m]: its regressor times its ten inertial parameters.
 
-        Where the regressor is not known yet, by Newton–Euler; a body that is asked for again has its own from then on.
+        Where the regressor is not known yet, by Newton–Euler, and kept; a body that is asked for again with other
+        parameters has its own regressor from then on.
         """
         if "links" in self.cache or not isinstance(self.model, Robot):
             return np.asarray(self.link_regressor(joint) @ parameters)
         model, asked = self.model, ("body", joint)
         if asked in self.cache:
+            before, torque = self.cache[asked]
+            if np.array_equal(before, parameters):
+                return torque
             own = self.remembered(("columns", joint), lambda: model.link_regressor(joint, self.q, self.v, self.a))
             return np.asarray(own @ parameters)
-        self.cache[asked] = True
         change = np.zeros((self.n_dof, parameters.size))
         change[joint] = parameters
-        return torque_of_change(model, change, self.q, self.v, self.a)
+        torque = torque_of_change(model, change, self.q, self.v, self.a)
+        torque.setflags(write=False)
+        self.cache[asked] = parameters.copy(), torque
+        return torque
 
     def body_alone(self, joint: int, parameters: np.ndarray) -> Robot | None:
         """The arm with one body behind a joint and no other, without rotors.
