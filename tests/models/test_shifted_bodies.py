@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.models.test_tilted_bodies import BODIES, PAYLOAD, SLOW, TILT
@@ -16,6 +18,7 @@ from lagnet.rigid_body.robot import load_description
 JOINT = 1
 FLEXIBLE = NamedEffect("joint_elasticity", JOINT, {"K": 1500.0})
 LOOSE = NamedEffect("backlash", JOINT, {"h": 0.004})
+PASSING = tuple(replace(body, interval=(0.4, 1.1)) for body in BODIES)
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +79,25 @@ def test_the_search_sees_a_flexible_joint_under_the_payload_that_was_found(motio
     exact = torque_with(motion, [payload, effect]) - load.load
     error = np.abs(columns[..., 0] * compliance - exact)[5:-5].max()
     assert error < 0.01 * np.abs(exact).max()
+
+
+class BodiesAlone:
+    """A model with the bodies of an arm that is none: no derivatives of it are known."""
+
+    def __init__(self, arm) -> None:
+        self.joints, self.n_dof, self.gravity = arm.joints, arm.n_dof, arm.gravity
+        self.inverse_dynamics, self.joint_torque_regressor = arm.inverse_dynamics, arm.joint_torque_regressor
+        self.link_regressor, self.weight_regressor = arm.link_regressor, arm.weight_regressor
+        self.gravity_regressor, self.inertial_parameters = arm.gravity_regressor, arm.inertial_parameters
+
+
+@pytest.mark.parametrize("others", [(TILT,), BODIES, (TILT, *BODIES), (TILT, *PASSING)], ids=range(4))
+@pytest.mark.parametrize("joint", [1, 2])
+def test_derivatives_are_the_differences_of_a_model_that_has_none(motion, others, joint) -> None:
+    law = transmission(FLEXIBLE)
+    found = transmission_columns(motion, law, joint, others, {})
+    opaque = replace(motion, model=BodiesAlone(motion.model), cache={})
+    expected = transmission_columns(opaque, law, joint, others, {})
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5 * np.abs(expected).max())
+    alone = law.columns(motion, joint, {})
+    assert np.abs(found - alone).max() > 1e-3 * np.abs(alone).max()

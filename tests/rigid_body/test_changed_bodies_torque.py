@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagnet.rigid_body.changed_bodies_torque import torque_of_change
+from lagnet.rigid_body.changed_bodies_torque import derivatives_of_change, torque_of_change
 from lagnet.rigid_body.inertia import parameters_of_body, tensor_about_com
 from lagnet.rigid_body.random_arm import random_arm
 
@@ -43,6 +43,19 @@ def test_it_is_the_regressor_times_the_change(make, kinds) -> None:
     change = make(np.random.default_rng(0))
     expected = robot.joint_torque_regressor(*motion()) @ change.ravel()
     np.testing.assert_allclose(torque_of_change(robot, change, *motion()), expected, rtol=1e-9, atol=1e-10)
+
+
+@pytest.mark.parametrize("make", CHANGES.values(), ids=CHANGES)
+def test_its_derivatives_are_those_of_its_torque(make) -> None:
+    robot = random_arm(N, seed=3).with_armature(np.full(N, 0.3))
+    change, step, signals = make(np.random.default_rng(0)), 1e-5, motion()
+    found = derivatives_of_change(robot, change, *signals)
+    for k in range(3):
+        for joint, unit in enumerate(np.eye(N)):
+            ends = [[x + (i == k) * s * unit for i, x in enumerate(signals)] for s in (step, -step)]
+            ahead, behind = (torque_of_change(robot, change, *end) for end in ends)
+            expected = (ahead - behind) / (2.0 * step)
+            np.testing.assert_allclose(found[k, :, :, joint], expected, atol=1e-6 * (1.0 + np.abs(ahead).max()))
 
 
 def test_of_a_model_that_is_no_robot_the_regressor_is_asked_in_pieces() -> None:

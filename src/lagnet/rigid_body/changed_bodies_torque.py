@@ -27,17 +27,28 @@ def torque_of_change(
         q, v, a: shape (n, dof).
     """
     if isinstance(model, Robot):
-        arm = model.with_armature(np.zeros(model.n_dof))
-        if np.all(is_physically_consistent(change[np.any(change != 0.0, axis=1)])):
-            return arm.with_inertial_parameters(change).inverse_dynamics(q, v, a)
-        bodies = _heavy_beside(change)
-        with_it, without = (arm.with_inertial_parameters(p) for p in (bodies + change, bodies))
-        return with_it.inverse_dynamics(q, v, a) - without.inverse_dynamics(q, v, a)
+        with_it, *without = _robots_of_change(model, change)
+        return with_it.inverse_dynamics(q, v, a) - sum(r.inverse_dynamics(q, v, a) for r in without)
     out = np.zeros(np.shape(q))
     for start in range(0, len(q), CHUNK):
         rows = slice(start, start + CHUNK)
         out[rows] = model.joint_torque_regressor(q[rows], v[rows], a[rows]) @ change.ravel()
     return out
+
+
+def derivatives_of_change(model: Robot, change: np.ndarray, q: Trajectory, v: Trajectory, a: Trajectory) -> np.ndarray:
+    """∂/∂q, ∂/∂v and ∂/∂a of Y(q, v, a) Δπ, shape (3, n, dof, dof), as `Robot.torque_derivatives`."""
+    with_it, *without = _robots_of_change(model, change)
+    return with_it.torque_derivatives(q, v, a) - sum(r.torque_derivatives(q, v, a) for r in without)
+
+
+def _robots_of_change(model: Robot, change: np.ndarray) -> list[Robot]:
+    """A robot whose torque is that of the change alone; or two of real bodies, whose difference it is."""
+    arm = model.with_armature(np.zeros(model.n_dof))
+    if np.all(is_physically_consistent(change[np.any(change != 0.0, axis=1)])):
+        return [arm.with_inertial_parameters(change)]
+    bodies = _heavy_beside(change)
+    return [arm.with_inertial_parameters(p) for p in (bodies + change, bodies)]
 
 
 def _heavy_beside(change: np.ndarray) -> np.ndarray:

@@ -12,7 +12,17 @@ from lagnet.effects.motion import Motion
 from lagnet.effects.transmission import Transmission
 from lagnet.models.corrected.presence import presence
 from lagnet.models.corrected.shifted_weights import moved, moved_bodies, weight_slope
-from lagnet.models.corrected.tilted_bodies import TILT, TILT_LAW, Named, carried_torque, change_of_gravity
+from lagnet.models.corrected.tilted_bodies import (
+    BODIES,
+    TILT,
+    TILT_LAW,
+    Named,
+    carried_torque,
+    change_of_gravity,
+    parameters_of,
+    together,
+)
+from lagnet.rigid_body.changed_bodies_torque import derivatives_of_change
 from lagnet.rigid_body.robot import Robot
 
 
@@ -67,15 +77,31 @@ def transmission_columns(
     return law.columns(motion, joint, shape) + added[..., None]
 
 
-def _slopes(motion: Motion, joint: int, known: Sequence[Named]) -> tuple[np.ndarray, ...]:
-    """∂τ/∂q_j, ∂τ/∂v_j and ∂τ/∂a_j of tilts, payloads and link changes, exact in speed and acceleration."""
+def _slopes(motion: Motion, joint: int, known: Sequence[Named]) -> Sequence[np.ndarray]:
+    """∂τ/∂q_j, ∂τ/∂v_j and ∂τ/∂a_j of tilts, payloads and link changes, each of shape (n, dof)."""
+    key = tuple((e.effect, e.joint, e.interval, e.recording, *e.values.items()) for e in known)
+    if isinstance(motion.model, Robot):
+        return motion.remembered(("slopes of bodies", key), lambda: _derivatives(motion, known))[joint]
+    return motion.remembered(("slopes of bodies", joint, key), lambda: _differences(motion, joint, known))
 
-    def make() -> tuple[np.ndarray, ...]:
-        bodies, unit = moved_bodies(joint, known), np.ones_like(motion.time)
-        change = change_of_gravity(motion, [e for e in known if e.effect == TILT])
-        changes = ({"v": unit}, {"v": -unit}, {"a": unit}, {"a": -unit})
-        faster, slower, more, less = (carried_torque(moved(motion, joint, c), bodies, change) for c in changes)
-        return np.asarray(weight_slope(motion, joint, known)), (faster - slower) / 2.0, (more - less) / 2.0
 
-    key = tuple((e.effect, e.joint, tuple(e.values.items())) for e in known)
-    return motion.remembered(("slopes of bodies", joint, key), make)
+def _derivatives(motion: Motion, known: Sequence[Named]) -> np.ndarray:
+    """The slopes for the motion of every joint, shape (dof, 3, n, dof)."""
+    robot, out = motion.model, np.zeros((3, *motion.q.shape, motion.n_dof))
+    change = change_of_gravity(motion, [e for e in known if e.effect == TILT])
+    for group, share in together(motion, [e for e in known if e.effect in BODIES]):
+        turned, parameters = robot.with_gravity(robot.gravity + change), parameters_of(motion, group)
+        out += derivatives_of_change(turned, parameters, motion.q, motion.v, motion.a) * share[..., None]
+    if change.any():
+        still = np.zeros_like(motion.q)
+        out[0] += robot.with_gravity(change).torque_derivatives(motion.q, still, still)[0]
+    return np.ascontiguousarray(np.moveaxis(out, 3, 0))
+
+
+def _differences(motion: Motion, joint: int, known: Sequence[Named]) -> tuple[np.ndarray, ...]:
+    """The slopes for the motion of one joint: exact in speed and acceleration."""
+    bodies, unit = moved_bodies(joint, known), np.ones_like(motion.time)
+    change = change_of_gravity(motion, [e for e in known if e.effect == TILT])
+    changes = ({"v": unit}, {"v": -unit}, {"a": unit}, {"a": -unit})
+    faster, slower, more, less = (carried_torque(moved(motion, joint, c), bodies, change) for c in changes)
+    return np.asarray(weight_slope(motion, joint, known)), (faster - slower) / 2.0, (more - less) / 2.0

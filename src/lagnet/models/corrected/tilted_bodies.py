@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -113,26 +113,39 @@ def carried_torque(motion: Motion, bodies: Sequence[Named], change: np.ndarray) 
         bodies: carried.
         change: shape (3,), of gravity against that of the model [m/s²].
     """
-    out, together = np.zeros_like(motion.load), defaultdict(list)
-    for body in bodies:
-        together[body.interval, body.recording].append(body)
-    for group in together.values():
-        share = np.asarray(presence(motion, group[0]))[..., None]
-        if np.any(share):
-            out += _carried(motion, group, change) * share
+    out = np.zeros_like(motion.load)
+    for group, share in together(motion, bodies):
+        out += _carried(motion, group, change) * share
     return out
+
+
+def together(motion: Motion, bodies: Sequence[Named]) -> Iterator[tuple[list[Named], np.ndarray]]:
+    """Bodies that come and go together, and how far they are there, shape (n, 1); none that is never there."""
+    groups = defaultdict(list)
+    for body in bodies:
+        groups[body.interval, body.recording].append(body)
+    for group in groups.values():
+        share = np.broadcast_to(np.asarray(presence(motion, group[0]))[..., None], (len(motion.time), 1))
+        if np.any(share):
+            yield group, share
 
 
 def _carried(motion: Motion, bodies: Sequence[Named], change: np.ndarray) -> np.ndarray:
     """Torque of bodies that are there throughout: linear in them, so that one Newton-Euler pass serves for all."""
-    parameters = np.zeros((motion.n_dof, 10))
-    for body in bodies:
-        parameters[link_of(motion, body)] += effect_named(body.effect).body_parameters(body.values)
+    parameters = parameters_of(motion, bodies)
     if isinstance(motion.model, Robot):
         turned = motion.model.with_gravity(motion.model.gravity + change)
         return torque_of_change(turned, parameters, motion.q, motion.v, motion.a)
     moving = sum((motion.body_torque(k, p) for k, p in enumerate(parameters) if p.any()), np.zeros_like(motion.load))
     return moving + (sum(_weight(motion, b, change) for b in bodies) if change.any() else 0.0)
+
+
+def parameters_of(motion: Motion, bodies: Sequence[Named]) -> np.ndarray:
+    """Inertial parameters that payloads and link changes add to each link, shape (dof, 10)."""
+    parameters = np.zeros((motion.n_dof, 10))
+    for body in bodies:
+        parameters[link_of(motion, body)] += effect_named(body.effect).body_parameters(body.values)
+    return parameters
 
 
 def link_of(motion: Motion, body: Named) -> int:
