@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lagnet.effects import motion as module
 from lagnet.effects.motion import Motion
 from lagnet.models.corrected.named_effects import NamedEffect
 from lagnet.models.corrected.tilted_bodies import fields_of, weight
+from lagnet.rigid_body.changed_bodies_torque import torque_of_change
 from lagnet.rigid_body.inertia import parameters_of_body
 from lagnet.rigid_body.robot import load_description
 
@@ -26,8 +28,20 @@ def _motion() -> Motion:
 def test_the_torque_of_a_body_is_that_of_its_regressor(joint, change) -> None:
     expected = _motion().link_regressor(joint) @ change
     motion = _motion()
-    for _ in range(3):  # by Newton-Euler, then by columns that are kept
-        assert motion.body_torque(joint, change) == pytest.approx(expected, abs=IDENTITY)
+    for size in (1.0, 1.0, 2.0, 3.0, 1.0):  # by Newton-Euler, as kept, then by columns
+        assert motion.body_torque(joint, size * change) == pytest.approx(size * expected, abs=2.0 * IDENTITY)
+
+
+def test_a_body_is_computed_once_for_the_same_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = []
+    monkeypatch.setattr(module, "torque_of_change", lambda *given: computed.append(given) or torque_of_change(*given))
+    motion = _motion()
+    first = motion.body_torque(2, BODY)
+    assert motion.body_torque(2, BODY.copy()) is first
+    assert motion.body_torque(3, BODY) is not first
+    assert len(computed) == 2
+    with pytest.raises(ValueError, match="read-only"):
+        first += 1.0
 
 
 def test_the_weight_of_a_body_is_that_of_its_regressor() -> None:

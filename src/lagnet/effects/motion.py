@@ -14,6 +14,8 @@ from lagnet.rigid_body.inertia import is_physically_consistent
 from lagnet.rigid_body.robot import Robot
 from lagnet.types import JointVector, RigidBodyModel, RobotModel, Samples, Trajectory, inertial_parameters_of
 
+BODIES = "torque of bodies"  # key of the last parameters and torque of each body: little, however long the motion
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -97,18 +99,17 @@ class Motion:
         """
         if "links" in self.cache or not isinstance(self.model, Robot):
             return np.asarray(self.link_regressor(joint) @ parameters)
-        model, asked = self.model, ("body", joint)
-        if asked in self.cache:
-            before, torque = self.cache[asked]
-            if np.array_equal(before, parameters):
-                return torque
+        model, last = self.model, self.remembered(BODIES, dict)
+        if joint in last and np.array_equal(last[joint][0], parameters):
+            return np.asarray(last[joint][1])
+        if ("asked", joint) in self.cache:
             own = self.remembered(("columns", joint), lambda: model.link_regressor(joint, self.q, self.v, self.a))
             return np.asarray(own @ parameters)
         change = np.zeros((self.n_dof, parameters.size))
         change[joint] = parameters
         torque = torque_of_change(model, change, self.q, self.v, self.a)
         torque.setflags(write=False)
-        self.cache[asked] = parameters.copy(), torque
+        self.cache["asked", joint], last[joint] = True, (parameters.copy(), torque)
         return torque
 
     def body_alone(self, joint: int, parameters: np.ndarray) -> Robot | None:

@@ -11,7 +11,7 @@ import numpy as np
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.settings import DecisionLimits
 from lagnet.effects.effect import Effect
-from lagnet.effects.motion import Motion
+from lagnet.effects.motion import BODIES, Motion
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.model import torque_along
 from lagnet.models.corrected.named_effects import NamedEffect
@@ -71,12 +71,11 @@ class Segment:
         return Motion(*seen, cache[key], problem.held, self.origin, problem.straight, cache)
 
     def _known_of(self, problem: Problem) -> dict:
-        """What is known of the samples under the problem's nominal model; of much motion nothing is kept."""
-        if not problem.is_small:
-            return {}
+        """What is known of the samples under the problem's nominal model; of much motion little is kept."""
         if not self.known or self.known[0][0] is not problem.nominal:
             self.known[:] = [(problem.nominal, {})]
-        return self.known[0][1]
+        known = self.known[0][1]
+        return known if problem.is_small else {BODIES: known.setdefault(BODIES, {})}
 
 
 @dataclass(frozen=True, eq=False)
