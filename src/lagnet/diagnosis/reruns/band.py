@@ -13,7 +13,7 @@ import numpy as np
 from lagnet.diagnosis.free_bodies import BETTER, against_given, with_nominal
 from lagnet.diagnosis.problem.intervals import EventInterval, set_aside
 from lagnet.diagnosis.problem.residuals import log_of_powers
-from lagnet.diagnosis.reruns.puzzles import is_identified, is_puzzled, names_as_many
+from lagnet.diagnosis.reruns.puzzles import fewer_names, is_identified, is_puzzled
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.errors import DiagnosisError
 from lagnet.models.corrected.named_effects import torque_with
@@ -23,7 +23,10 @@ LEAST = 2.5  # [Hz]
 
 
 def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> DiagnosisState:
-    """The first run, or the one in a narrower band that predicts torque below it much better, with as many names.
+    """The first run, or the one in a narrower band that predicts torque below it much better.
+
+    With as many names, or so much better that each name that is lost is paid for: wrong names of a wider band may be
+    more than the cause.
 
     Args:
         at: a run on the same recordings at a given bandwidth [Hz].
@@ -35,7 +38,8 @@ def best_band(first: DiagnosisState, at: Callable[[float], DiagnosisState]) -> D
     events = [s for one in tried for s in one.events]
     errors = [_error(one, tried[-1], events) for one in tried]
     best = int(np.argmin(errors))
-    return tried[best] if errors[best] < errors[0] - BETTER and names_as_many(tried[best], first) else first
+    price = BETTER * (1 + fewer_names(tried[best], first))
+    return tried[best] if errors[best] < errors[0] - price else first
 
 
 def _narrower(bandwidth: float, at: Callable[[float], DiagnosisState]) -> list[DiagnosisState]:

@@ -53,7 +53,7 @@ def _explains(state: DiagnosisState, effects: Sequence[NamedEffect], found: Iden
     return found is not None and explains(state.problem, state.problem.holdout, effects, found.layer, state.noise)
 
 
-def names_as_many(second: DiagnosisState, first: DiagnosisState) -> bool:
-    """Whether another run has at least as many causes: what one joint gains is no reason to forget others."""
+def fewer_names(second: DiagnosisState, first: DiagnosisState) -> int:
+    """How many causes another run has less: what one joint gains is no reason to forget others."""
     second_has, first_has = (len(one.effects) + len(one.ambiguous) for one in (second, first))
-    return second_has >= first_has
+    return max(0, first_has - second_has)

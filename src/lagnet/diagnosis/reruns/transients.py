@@ -35,8 +35,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
     loaded = beside_loads(state, differing_groups(state.problem, scan, state.lasting_effects), again)
     if loaded is None:
         return found
-    before, after = (log_error(one.after, one.noise) for one in (found, loaded))
-    return loaded if after < before - BETTER else found
+    return loaded if _predicts_better(loaded, found) else found
 
 
 def _with_events_apart(state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
@@ -60,8 +59,14 @@ def _with_events_apart(state: DiagnosisState, scan: Scan, again: Callable[[Probl
         if all(any(old.covers(new, slack) for old in events) for new in scan.events):
             break
         events = scan.events
-    found = separated(replace(clean, problem=whole), scan) if scan.events else state
-    return found if found.transients or found.events else state
+    found = separated(replace(clean, problem=whole), scan) if scan.events else replace(clean, problem=whole)
+    # Without transients the events were none: beside wrong names, what those lack looks like one.
+    return found if found.transients or found.events or _predicts_better(found, state) else state
+
+
+def _predicts_better(second: DiagnosisState, first: DiagnosisState) -> bool:
+    before, after = (log_error(one.after, one.noise) for one in (first, second))
+    return after < before - BETTER
 
 
 def _leading(problem: Problem, events: tuple[EventInterval, ...]) -> tuple[EventInterval, ...]:
