@@ -4,7 +4,7 @@ A belt between two joints pulls with the angle of the other; the weight of a wro
 weights vary with sines of angles. Where a joint has a residual above the noise, a few terms that belong to no effect in
 the catalogue (another joint's angle, friction that changes along the path) replace an effect. If they leave a much
 smaller residual, and the effect beside them explains next to nothing, it only imitated them. Only laws that take their
-form from the arm's own torque, a power of speed, or the way that a joint came, are tested: dry and viscous friction,
+form from the arm's own torque, the speed, or the way that a joint came, are tested: Coulomb and viscous friction,
 springs, offsets and rotors are as plain as the terms. Dry friction is among the terms, as the mean of one that changes
 along the path.
 """

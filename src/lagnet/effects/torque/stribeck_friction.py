@@ -26,6 +26,7 @@ class StribeckFriction(Effect):
     )
     shown_by = "slow passes through zero speed"
     confused_with = ("coulomb_friction", "backlash", "presliding_hysteresis")
+    plain_terms = 3
     contains = ("coulomb_friction",)
     absent = (("Fc", 0.0), ("Fs", 0.0))
     is_friction = True
