@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lagnet.diagnosis.reruns import transients
+from lagnet.diagnosis.reruns import puzzles, transients
 from lagnet.diagnosis.reruns.transients import settle_transients
 
 EVENT = SimpleNamespace(gain=1.0, covers=lambda *_: False)
@@ -42,7 +42,8 @@ class State:
 
 @pytest.mark.parametrize(("factor", "taken"), [(2.5, "first"), (3.5, "second")])
 def test_the_better_prediction_stands(monkeypatch: pytest.MonkeyPatch, factor: float, taken: str) -> None:
-    first, second = State(0.0), State(-np.log(factor))
+    first: Any = State(0.0)
+    second = State(-np.log(factor))
     scans = iter([SimpleNamespace(events=(EVENT,)), SimpleNamespace(events=())])
     masked = Posed(fit="masked")
     for name, answer in {
@@ -52,17 +53,17 @@ def test_the_better_prediction_stands(monkeypatch: pytest.MonkeyPatch, factor: f
         "thinned": lambda x: x,
         "blurred_speed": lambda _: 0.0,
         "fit_sign_model": lambda problem: problem,
-        "log_error": lambda after, _: after,
         "is_puzzled": lambda _: False,
     }.items():
         monkeypatch.setattr(transients, name, answer)
+    monkeypatch.setattr(puzzles, "log_error", lambda after, _: after)
     asked = []
 
     def again(problem: Any) -> Any:
         asked.append(problem)
         return State(second.after, problem)
 
-    found: Any = settle_transients(first, again)  # type: ignore[arg-type]
+    found: Any = settle_transients(first, again)
     assert [problem.fit for problem in asked] == ["masked"]
     assert found.after == {"first": first, "second": second}[taken].after
     assert found.problem.fit == "all"

@@ -11,7 +11,7 @@ from lagnet.diagnosis.problem.problem import Problem
 from lagnet.diagnosis.problem.residuals import log_of_powers
 from lagnet.diagnosis.reference_recording import beyond_one_recording
 from lagnet.diagnosis.reruns.loads import beside_loads
-from lagnet.diagnosis.reruns.puzzles import fewer_names, is_identified, is_outdone, is_puzzled
+from lagnet.diagnosis.reruns.puzzles import fewer_names, is_identified, is_outdone, is_puzzled, predicts_better
 from lagnet.diagnosis.reruns.transients import settle_transients
 from lagnet.diagnosis.rules.surrogate_terms import SurrogateTerms
 from lagnet.diagnosis.state import DiagnosisState
@@ -53,8 +53,7 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
         return None
     if puzzled:
         return None if is_puzzled(against_given(second)) else second
-    before, after = (log_error(one.after, one.noise) for one in (first, second))
-    return second if not fewer_names(second, first) and after < before - BETTER else None
+    return second if not fewer_names(second, first) and predicts_better(second, first) else None
 
 
 def _imitations(state: DiagnosisState) -> set[tuple[str, int | None]]:

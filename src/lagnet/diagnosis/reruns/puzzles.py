@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from lagnet.diagnosis.free_bodies import explains
+from lagnet.diagnosis.free_bodies import BETTER, explains, log_error
 from lagnet.diagnosis.identified.borne_out import powers_beside
 from lagnet.diagnosis.identified.fit import Identified
 from lagnet.diagnosis.state import DiagnosisState
@@ -57,3 +57,9 @@ def fewer_names(second: DiagnosisState, first: DiagnosisState) -> int:
     """How many causes another run has less: what one joint gains is no reason to forget others."""
     second_has, first_has = (len(one.effects) + len(one.ambiguous) for one in (second, first))
     return max(0, first_has - second_has)
+
+
+def predicts_better(second: DiagnosisState, first: DiagnosisState) -> bool:
+    """Whether another run leaves a third of the error on held-out motion, all joints together."""
+    before, after = (log_error(one.after, one.noise) for one in (first, second))
+    return bool(after < before - BETTER)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from lagnet.diagnosis.free_bodies import BETTER, log_error
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.intervals import SMEAR, EventInterval, set_aside, too_much
 from lagnet.diagnosis.problem.problem import Problem, blurred_speed
 from lagnet.diagnosis.problem.thinning import thinned
 from lagnet.diagnosis.reruns.loads import beside_loads, separated
-from lagnet.diagnosis.reruns.puzzles import is_puzzled
+from lagnet.diagnosis.reruns.puzzles import is_puzzled, predicts_better
 from lagnet.diagnosis.state import DiagnosisState
 from lagnet.diagnosis.transients.detection import Scan, detect_events
 from lagnet.diagnosis.transients.differing_recordings import differing_groups, differing_recordings
@@ -35,7 +34,7 @@ def settle_transients(state: DiagnosisState, again: Callable[[Problem], Diagnosi
     loaded = beside_loads(state, differing_groups(state.problem, scan, state.lasting_effects), again)
     if loaded is None:
         return found
-    return loaded if _predicts_better(loaded, found) else found
+    return loaded if predicts_better(loaded, found) else found
 
 
 def _with_events_apart(state: DiagnosisState, scan: Scan, again: Callable[[Problem], DiagnosisState]) -> DiagnosisState:
@@ -61,12 +60,7 @@ def _with_events_apart(state: DiagnosisState, scan: Scan, again: Callable[[Probl
         events = scan.events
     found = separated(replace(clean, problem=whole), scan) if scan.events else replace(clean, problem=whole)
     # Without transients the events were none: beside wrong names, what those lack looks like one.
-    return found if found.transients or found.events or _predicts_better(found, state) else state
-
-
-def _predicts_better(second: DiagnosisState, first: DiagnosisState) -> bool:
-    before, after = (log_error(one.after, one.noise) for one in (first, second))
-    return after < before - BETTER
+    return found if found.transients or found.events or predicts_better(found, state) else state
 
 
 def _leading(problem: Problem, events: tuple[EventInterval, ...]) -> tuple[EventInterval, ...]:
