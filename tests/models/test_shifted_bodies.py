@@ -101,3 +101,13 @@ def test_derivatives_are_the_differences_of_a_model_that_has_none(motion, others
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5 * np.abs(expected).max())
     alone = law.columns(motion, joint, {})
     assert np.abs(found - alone).max() > 1e-3 * np.abs(alone).max()
+
+
+def test_a_link_before_the_joint_leaves_its_columns_alone(motion) -> None:
+    behind = NamedEffect("link_inertia", JOINT - 1, dict(BODIES[1].values))
+    opaque = replace(motion, model=BodiesAlone(motion.model), cache={})
+    law = transmission(FLEXIBLE)
+    for seen in (motion, opaque):
+        alone = law.columns(seen, JOINT, {})
+        found = transmission_columns(seen, law, JOINT, [behind], {})
+        np.testing.assert_allclose(found, alone, rtol=0, atol=1e-9 * np.abs(alone).max())

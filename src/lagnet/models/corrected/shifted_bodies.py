@@ -77,8 +77,8 @@ def transmission_columns(
     return law.columns(motion, joint, shape) + added[..., None]
 
 
-def _slopes(motion: Motion, joint: int, known: Sequence[Named]) -> Sequence[np.ndarray]:
-    """∂τ/∂q_j, ∂τ/∂v_j and ∂τ/∂a_j of tilts, payloads and link changes, each of shape (n, dof)."""
+def _slopes(motion: Motion, joint: int, known: Sequence[Named]) -> np.ndarray:
+    """∂τ/∂q_j, ∂τ/∂v_j and ∂τ/∂a_j of tilts, payloads and link changes, shape (3, n, dof)."""
     key = tuple((e.effect, e.joint, e.interval, e.recording, *e.values.items()) for e in known)
     if isinstance(motion.model, Robot):
         return motion.remembered(("slopes of bodies", key), lambda: _derivatives(motion, known))[joint]
@@ -98,10 +98,11 @@ def _derivatives(motion: Motion, known: Sequence[Named]) -> np.ndarray:
     return np.ascontiguousarray(np.moveaxis(out, 3, 0))
 
 
-def _differences(motion: Motion, joint: int, known: Sequence[Named]) -> tuple[np.ndarray, ...]:
-    """The slopes for the motion of one joint: exact in speed and acceleration."""
+def _differences(motion: Motion, joint: int, known: Sequence[Named]) -> np.ndarray:
+    """The slopes for the motion of one joint, shape (3, n, dof): exact in speed and acceleration."""
     bodies, unit = moved_bodies(joint, known), np.ones_like(motion.time)
     change = change_of_gravity(motion, [e for e in known if e.effect == TILT])
     changes = ({"v": unit}, {"v": -unit}, {"a": unit}, {"a": -unit})
     faster, slower, more, less = (carried_torque(moved(motion, joint, c), bodies, change) for c in changes)
-    return np.asarray(weight_slope(motion, joint, known)), (faster - slower) / 2.0, (more - less) / 2.0
+    weight = np.broadcast_to(np.asarray(weight_slope(motion, joint, known)), motion.load.shape)
+    return np.stack([weight, (faster - slower) / 2.0, (more - less) / 2.0])
