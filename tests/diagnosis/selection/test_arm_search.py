@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from tests.diagnosis.posed import pose
 
-from lagnet.diagnosis.selection.arm_search import refit_selection
+from lagnet.diagnosis.selection.arm_search import refit_selection, search_arm
+from lagnet.effects.signal.encoder_offset import EncoderOffset
 
 ELASTICITY = "joint_elasticity"
 NOISY = 0.1  # of each joint's usual torque
@@ -47,3 +48,14 @@ def test_the_mass_of_a_link_is_found_under_noise(plant, arm, link: int) -> None:
     assert names(posed, found) == [("link_inertia", link)]
     share = found.fit.coefficients[found.arm_wide[0]]
     assert share == pytest.approx(np.array([0.1]), rel=0.2)
+
+
+def test_what_is_not_physical_is_dropped_before_the_load_beside_it(plant, arm, monkeypatch) -> None:
+    monkeypatch.setattr(EncoderOffset, "plausible", lambda law, coefficients, shape: False)
+    real = plant(robot=arm.with_payload(1.0, np.array([0.0, 0.0, 0.08]), 3e-4 * np.eye(3)))
+    posed = pose(arm, real.record(1), real.record(2))
+    load, offset = posed.index("payload", None), posed.index("encoder_offset", 1)
+    start = refit_selection(posed.equations, replace(posed.select({}, ("payload",)), arm_wide=(load, offset)))
+    assert start.score == -np.inf
+    found = search_arm(posed.equations, start.scales.noise_power, start.scales.torque_power, (start,))
+    assert found.arm_wide == (load,)

@@ -168,10 +168,8 @@ def _score(
 ) -> float:
     """log P(S) = −Σ_j n_j / (2 g_j) ln E_j − Σ_k penalty_k; −∞ where an arm-wide hypothesis is not physical."""
     library = equations.library
-    for i in arm_wide:
-        h = library.hypotheses[i]
-        if not h.law.plausible(fit.coefficients[i], dict(h.shape)):
-            return -np.inf
+    if not all(_is_physical(library, fit, i) for i in arm_wide):
+        return -np.inf
     evidence = -0.5 * np.sum(equations.samples / scales.inefficiency * _log_errors(library, fit, scales))
     chosen = (*arm_wide, *(i for own in local for i in own))
     return float(evidence - sum(equations.limits.penalty(*library.freedom[i]) for i in chosen))
@@ -235,9 +233,15 @@ def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:
 
 
 def _drop_far(equations: NormalEquations, best: Selection) -> Selection:
-    """Drops arm-wide hypotheses without which log P does not fall."""
-    for index in best.arm_wide:
+    """Drops arm-wide hypotheses without which log P does not fall: first those that are not physical, if any is not."""
+    for index in sorted(best.arm_wide, key=lambda i: _is_physical(equations.library, best.fit, i)):
         without = _settle(equations, tuple(i for i in best.arm_wide if i != index), best.scales, best)
         if without.score >= best.score or not _matters(equations, best, index):
             return _drop_far(equations, without)
     return best
+
+
+def _is_physical(library: Library, fit: Fit, index: int) -> bool:
+    """Whether the coefficients of a hypothesis are those of something that can be."""
+    h = library.hypotheses[index]
+    return h.law.plausible(fit.coefficients[index], dict(h.shape))
