@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.diagnosis.test_free_bodies import friction
@@ -22,6 +24,7 @@ CENTRE = np.array([0.05, -0.04, 0.1])  # [m], in the frame of the last link
 NEAR = 0.03  # relative error of a mass
 APART = 0.01  # [m] by which a centre may be off
 QUIET = 1e-3 * np.ones(JOINTS)  # [N m]
+HUM = 20.0  # [N m]
 
 
 @pytest.fixture(scope="module")
@@ -99,6 +102,19 @@ def test_a_load_shows_beside_links_that_all_recordings_share(record, model) -> N
     found = beyond_one_recording(problem, QUIET, identify(problem, ()))
     assert found is not None
     assert [load.recording for load in found.loads] == [1]
+
+
+def test_a_joint_that_something_else_moves_hides_no_load(record, model) -> None:
+    """At joint 0 a sinusoid of time leaves far more than all loads."""
+
+    def disturbed(recording):
+        return replace(recording, tau=recording.tau + HUM * np.sin(7.0 * recording.time)[:, None] * np.eye(JOINTS)[0])
+
+    recordings = [disturbed(record(seed, mass)) for seed, mass in enumerate((0.0, MASSES[1], 0.0, MASSES[1]), 1)]
+    problem = posed(model, recordings[:2], *recordings[2:])
+    found = beyond_one_recording(problem, QUIET, identify(problem, ()))
+    assert found is not None
+    assert [load.values["m"] for load in found.loads] == pytest.approx([MASSES[1]], rel=NEAR)
 
 
 def test_one_recording_alone_has_no_other_to_differ_from(record, model) -> None:

@@ -77,7 +77,7 @@ def _recordings_differ(problem: Problem, noise: np.ndarray, shared: Identified |
     for n in {p.recording for p in problem.fit}:
         residual = _residual(problem, model, n)
         _, left = _change_of_last_link(problem, n, residual)
-        if np.sum(left**2 / noise**2) < DIFFERS * np.sum(residual**2 / noise**2):
+        if _share(left, residual, noise) < DIFFERS:
             return True
     return False
 
@@ -107,7 +107,7 @@ def _with_loads(problem: Problem, found: Identified, others: Iterable[int], nois
     loads = {}
     for n in others:
         load, left = _change_of_last_link(problem, n, residuals[n])
-        if np.sum(left**2 / noise**2) < FALLS * np.sum(residuals[n] ** 2 / noise**2):
+        if _share(left, residuals[n], noise) < FALLS:
             loads[n], residuals[n] = load, left
     if not loads or any(load[0] <= 0.0 for load in loads.values()):
         return None
@@ -134,6 +134,15 @@ def _change_of_last_link(problem: Problem, recording: int, residual: np.ndarray)
     equations = (columns * weights[None, :, None]).reshape(-1, columns.shape[2])
     change = np.linalg.lstsq(equations, (residual * weights).ravel(), rcond=RIDGE)[0]
     return change, residual - columns @ change
+
+
+def _share(left: np.ndarray, residual: np.ndarray, noise: np.ndarray) -> float:
+    """exp mean_j ln(mean left_j² / mean r_j²), powers at least σ_j²: the geometric mean over joints.
+
+    A load leaves the joints that do not carry it as they were, and what these are left by may be most of all.
+    """
+    after, before = (log_of_powers(np.mean(r**2, axis=0), noise) for r in (left, residual))
+    return float(np.exp((after - before) / noise.size))
 
 
 def _last_link(problem: Problem, piece: Segment) -> np.ndarray:
