@@ -1,4 +1,4 @@
-"""Effects that held-out recordings do not need have no name, alone or two that cancel each other."""
+"""Effects that held-out recordings do not need have no name, alone or where they cancel each other."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pytest
 from tests.diagnosis.posed import pose
 
 from lagnet.diagnosis.rules.no_holdout_gain import NoHoldoutGain
+from lagnet.diagnosis.selection.holdout_gain import opposed_pairs, ratio_without
 
 JOINT = 1
 TAUT = -2.5  # [N m] of load, above which a cable pulls; held out, the load stays below it
@@ -43,3 +44,17 @@ def test_two_that_cancel_each_other_in_part_stay_where_both_act(of_both) -> None
 
 def test_two_that_cancel_each_other_stay_where_held_out_motion_meets_what_they_stand_for(of_both) -> None:
     assert NoHoldoutGain().rejected(of_both(taut, 8)) == ()
+
+
+@pytest.mark.parametrize("held_out, needed", [(4, False), (6, False), (8, True)])
+def test_all_of_a_joint_go_where_held_out_motion_needs_none_of_them(arm, plant, at, held_out, needed) -> None:
+    real = plant(at(JOINT, taut))
+    posed = pose(arm, real.record(3), real.record(held_out))
+    names = ["torque_gain", "joint_spring", "viscous_friction"]
+    found = posed.select({JOINT: names})
+    candidate = posed.candidate(found)
+    unseen = candidate.holdout_equations
+    assert all(p.without > 1.02 * p.with_it for p in candidate.holdout_gain.values()), "each needs the others"
+    pairs = [ratio_without(posed.equations, unseen, found, p, candidate.sigma) for p in opposed_pairs(unseen, found)]
+    assert all(ratio > 1.02 for ratio in pairs), "no two of them are needless"
+    assert {r.effect for r in NoHoldoutGain().rejected(candidate)} == (set() if needed else set(names))

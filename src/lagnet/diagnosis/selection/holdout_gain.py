@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection, take_off
+from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.arm_search import Selection
 
 OPPOSED = (
@@ -93,13 +94,13 @@ def _part(
     )
 
 
-def ratio_without_pair(
-    equations: NormalEquations, unseen: NormalEquations, found: Selection, pair: tuple[int, int], sigma: np.ndarray
+def ratio_without(
+    equations: NormalEquations, unseen: NormalEquations, found: Selection, group: tuple[int, ...], sigma: np.ndarray
 ) -> float:
-    """Held-out error without two effects over that with them, the others refitted: the largest of their joints."""
-    fewer = fit_selection(equations, [i for i in found.indices if i not in pair], sigma, folds=False)
+    """Held-out error without some effects over that with them, the others refitted: the largest of their joints."""
+    fewer = fit_selection(equations, [i for i in found.indices if i not in group], sigma, folds=False)
     with_all, without = error_of(found.fit, unseen), error_of(fewer, unseen)
-    at = [j for j in range(len(without)) if any(i in unseen.library.slots[j] for i in pair)]
+    at = [j for j in range(len(without)) if any(i in unseen.library.slots[j] for i in group)]
     return float(np.max(without[at] / np.maximum(with_all[at], 1e-300)))
 
 
@@ -114,6 +115,12 @@ def opposed_pairs(unseen: NormalEquations, found: Selection) -> list[tuple[int, 
         against = np.argwhere(np.triu(products < -OPPOSED * np.outer(size, size), 1))
         opposed |= {(own[i], own[k]) for i, k in against}
     return sorted(opposed)
+
+
+def of_one_joint(found: Selection, library: Library) -> list[tuple[int, ...]]:
+    """All effects at each joint that has more than two; of two, the pair is asked."""
+    places = [[i for i in found.indices if library.hypotheses[i].joint == j] for j in range(library.n_dof)]
+    return [tuple(own) for own in places if len(own) > 2]
 
 
 def _nominal_nmse(equations: NormalEquations, scale: np.ndarray) -> np.ndarray:
