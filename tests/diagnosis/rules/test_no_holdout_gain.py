@@ -46,7 +46,7 @@ def test_two_that_cancel_each_other_stay_where_held_out_motion_meets_what_they_s
     assert NoHoldoutGain().rejected(of_both(taut, 8)) == ()
 
 
-@pytest.mark.parametrize("held_out, needed", [(4, False), (6, False), (8, True)])
+@pytest.mark.parametrize(("held_out", "needed"), [(4, False), (6, False), (8, True)])
 def test_all_of_a_joint_go_where_held_out_motion_needs_none_of_them(arm, plant, at, held_out, needed) -> None:
     real = plant(at(JOINT, taut))
     posed = pose(arm, real.record(3), real.record(held_out))

@@ -116,6 +116,19 @@ def test_a_joint_is_asked_that_is_unexplained_in_the_fit_or_held_out(fitted, hel
     assert surrogate_terms.SurrogateTerms()._is_unexplained(sides, 0, 1e-3, 1.0) == asked
 
 
+@pytest.mark.parametrize(("fitted", "held_out", "asked"), [(2.0, 6.0, True), (6.0, 2.0, True), (6.0, 6.0, False)])
+def test_an_effect_is_asked_that_explains_something_in_the_fit_or_held_out(fitted, held_out, asked) -> None:
+    """Beside another effect that is larger by some factor; the effect is a term with an error."""
+
+    def side(larger: float, seed: int):
+        other, term, junk = np.random.default_rng(seed).normal(size=(3, 2000))
+        names = np.column_stack([larger * other, term + 0.6 * junk])
+        return surrogate_terms._Side(larger * other + term, names, np.column_stack([term, junk**2]), 1e-6)
+
+    replaced = surrogate_terms.SurrogateTerms()._replaced(side(fitted, 1), side(held_out, 2), 1, 3)
+    assert (replaced is not None) == asked
+
+
 @pytest.fixture
 def bristles(arm, plant, at):
     """Presliding friction fitted to a law of some joint."""

@@ -96,7 +96,7 @@ class SurrogateTerms(RejectionRule):
         alone = _residual_shares(fit, unseen, *kept)
         name = (fit.names[:, [k]], unseen.names[:, [k]])
         with_name = _residual_shares(fit, unseen, *map(np.hstack, zip(kept, name, strict=True)))
-        if np.any(alone - with_name < self.material):
+        if np.all(alone - with_name < self.material):
             return None
         for count in range(1, most + 1):
             chosen = _chosen(kept[0], fit.terms, fit.wanted, count)
