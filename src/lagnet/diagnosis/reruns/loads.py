@@ -23,8 +23,13 @@ def beside_loads(
     problem = found.problem
     clean = again(without_loads(problem, found.loads))
     whole = replace(clean.problem, fit=problem.fit, holdout=problem.holdout)
-    parts = separated(replace(clean, problem=whole), found.scan)
+    parts = separated(replace(clean, problem=whole), _usual_beside(clean, found.scan))
     return replace(parts, transients=lasting_loads(whole, parts.transients), events=())
+
+
+def _usual_beside(clean: DiagnosisState, scan: Scan) -> Scan:
+    """The scan with what names leave of recordings less their loads as the usual power: no load explains that."""
+    return replace(scan, power=np.maximum(scan.power, _left(clean)))
 
 
 def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
@@ -34,7 +39,10 @@ def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
         clean: the run, all samples valid again.
         scan: the intervals.
     """
-    power = np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power)
-    sigma = np.sqrt(power / clean.equations.samples)
-    parts = separate(clean.problem, clean.refit.effects, sigma, scan)
+    parts = separate(clean.problem, clean.refit.effects, np.sqrt(_left(clean)), scan)
     return replace(clean, refit=parts.refit, transients=parts.transients, events=parts.unnamed)
+
+
+def _left(clean: DiagnosisState) -> np.ndarray:
+    """max(mean r_j², σ_j²) of a run, shape (dof,) [N² m²]."""
+    return np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power) / clean.equations.samples
