@@ -233,12 +233,20 @@ def _matters(equations: NormalEquations, found: Selection, index: int) -> bool:
 
 
 def _drop_far(equations: NormalEquations, best: Selection) -> Selection:
-    """Drops arm-wide hypotheses without which log P does not fall: first those that are not physical, if any is not."""
-    for index in sorted(best.arm_wide, key=lambda i: _is_physical(equations.library, best.fit, i)):
-        without = _settle(equations, tuple(i for i in best.arm_wide if i != index), best.scales, best)
-        if without.score >= best.score or not _matters(equations, best, index):
+    """Drops arm-wide hypotheses without which log P does not fall.
+
+    Where one of them is not physical, the first without which all are; if there is none, that one.
+    """
+    for index in best.arm_wide:
+        without = _without(equations, best, index)
+        if without.score > -np.inf and (without.score >= best.score or not _matters(equations, best, index)):
             return _drop_far(equations, without)
-    return best
+    wrong = [i for i in best.arm_wide if not _is_physical(equations.library, best.fit, i)]
+    return _drop_far(equations, _without(equations, best, wrong[0])) if wrong else best
+
+
+def _without(equations: NormalEquations, best: Selection, index: int) -> Selection:
+    return _settle(equations, tuple(i for i in best.arm_wide if i != index), best.scales, best)
 
 
 def _is_physical(library: Library, fit: Fit, index: int) -> bool:
