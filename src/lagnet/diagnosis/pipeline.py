@@ -166,9 +166,7 @@ def with_misspecification(state: DiagnosisState) -> DiagnosisState:
     effects = state.effects
     if not effects:
         return state
-    problem = lasting(state.problem, state.events)
-    power = np.maximum(state.selection.fit.sse, state.selection.scales.noise_power)
-    sigma = np.sqrt(power / state.equations.samples)
+    problem, sigma = lasting(state.problem, state.events), state.sigma
     errors = [with_convention(*pair) for pair in zip(effects, interval_errors(problem, effects, sigma), strict=True)]
     old = (*state.refit.intervals, *(p.intervals for p in state.transients))
     wide = [widened(*pair) for pair in zip(old, errors, strict=True)]

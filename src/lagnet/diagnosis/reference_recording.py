@@ -139,7 +139,7 @@ def _change_of_last_link(problem: Problem, recording: int, residual: np.ndarray)
 def _share(left: np.ndarray, residual: np.ndarray, noise: np.ndarray) -> float:
     """exp mean_j ln(mean left_j² / mean r_j²), powers at least σ_j²: the geometric mean over joints.
 
-    A load leaves the joints that do not carry it as they were, and what these are left by may be most of all.
+    A joint that does not carry the load lacks as much as before, which may be more than all others lack.
     """
     after, before = (log_of_powers(np.mean(r**2, axis=0), noise) for r in (left, residual))
     return float(np.exp((after - before) / noise.size))

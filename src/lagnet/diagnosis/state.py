@@ -84,6 +84,11 @@ class DiagnosisState:
         return (*self.refit.effects, *(p.effect for p in self.transients))
 
     @property
+    def sigma(self) -> np.ndarray:
+        """Residual of the persistent effects at each joint, at least the noise, shape (dof,) [N m]."""
+        return self.selection.sigma(self.equations)
+
+    @property
     def origins(self) -> dict[int, int | None]:
         """By held-out recording, the fitted one that it is the end of or whose load it carries; None for another."""
         return {p.recording: p.origin for p in self.problem.holdout}

@@ -11,19 +11,13 @@ import pytest
 from lagnet.diagnosis.reruns import loads
 from lagnet.diagnosis.transients.detection import Scan
 
-SAMPLES = np.array([2.0, 2.0, 2.0])
-
 
 @pytest.mark.parametrize(
     ("layers", "names", "usual"),
-    [([1.0, 1.0, 1.0], [8.0, 1.0, 2.0], [4.0, 2.0, 1.0]), ([5.0, 0.5, 1.0], [8.0, 1.0, 2.0], [5.0, 2.0, 1.0])],
+    [([1.0, 1.0, 1.0], [4.0, 2.0, 0.5], [4.0, 2.0, 1.0]), ([5.0, 0.5, 1.0], [4.0, 2.0, 0.5], [5.0, 2.0, 1.0])],
 )
 def test_the_usual_power_is_that_beside_names_where_these_leave_more_than_the_layer(layers, names, usual) -> None:
-    """Of three joints; the noise of the second is twice what names leave of it."""
-    selection = SimpleNamespace(
-        fit=SimpleNamespace(sse=np.array(names)), scales=SimpleNamespace(noise_power=np.array([1.0, 4.0, 1.0]))
-    )
-    clean: Any = SimpleNamespace(selection=selection, equations=SimpleNamespace(samples=SAMPLES))
+    clean: Any = SimpleNamespace(sigma=np.sqrt(names))
     found = loads._usual_beside(clean, Scan((), np.array(layers), 2.0))
-    np.testing.assert_array_equal(found.power, usual)
+    np.testing.assert_allclose(found.power, usual)
     assert found.inflation == 2.0

@@ -29,7 +29,7 @@ def beside_loads(
 
 def _usual_beside(clean: DiagnosisState, scan: Scan) -> Scan:
     """The scan with what names leave of recordings less their loads as the usual power: no load explains that."""
-    return replace(scan, power=np.maximum(scan.power, _left(clean)))
+    return replace(scan, power=np.maximum(scan.power, clean.sigma**2))
 
 
 def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
@@ -39,10 +39,5 @@ def separated(clean: DiagnosisState, scan: Scan) -> DiagnosisState:
         clean: the run, all samples valid again.
         scan: the intervals.
     """
-    parts = separate(clean.problem, clean.refit.effects, np.sqrt(_left(clean)), scan)
+    parts = separate(clean.problem, clean.refit.effects, clean.sigma, scan)
     return replace(clean, refit=parts.refit, transients=parts.transients, events=parts.unnamed)
-
-
-def _left(clean: DiagnosisState) -> np.ndarray:
-    """max(mean r_j², σ_j²) of a run, shape (dof,) [N² m²]."""
-    return np.maximum(clean.selection.fit.sse, clean.selection.scales.noise_power) / clean.equations.samples

@@ -37,7 +37,7 @@ class NoHoldoutGain(RejectionRule):
     def _together(self, candidate: Candidate) -> tuple[Rejection, ...]:
         """All of the first group of effects that are of use to each other alone."""
         fitted, unseen, found = candidate.equations, candidate.holdout_equations, candidate.selection
-        for group in (*opposed_pairs(unseen, found), *of_one_joint(found, candidate.library)):
+        for group in (*opposed_pairs(unseen, found), *of_one_joint(unseen, found)):
             if any(candidate.holdout_gain[i].silent for i in group):
                 continue
             ratio = ratio_without(fitted, unseen, found, group, candidate.sigma)

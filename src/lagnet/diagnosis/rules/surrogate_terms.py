@@ -60,7 +60,7 @@ class SurrogateTerms(RejectionRule):
     Args:
         most_left: residual with the terms over that with the effect, up to which the effect is rejected.
         nothing: of what the effect explained, that it may still add beside the terms.
-        material: share of a joint's mismatch that the effect must explain before it is tested.
+        material: share of a joint's fitted or held-out mismatch that the effect must explain before it is tested.
         little: residual share of a joint's mismatch, below which a joint that the effect explains confirms it.
     """
 

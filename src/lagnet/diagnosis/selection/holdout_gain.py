@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lagnet.diagnosis.regression.cross_validation import Fit, NormalEquations, fit_selection, take_off
-from lagnet.diagnosis.regression.library import Library
 from lagnet.diagnosis.selection.arm_search import Selection
 
 OPPOSED = (
@@ -117,8 +116,9 @@ def opposed_pairs(unseen: NormalEquations, found: Selection) -> list[tuple[int, 
     return sorted(opposed)
 
 
-def of_one_joint(found: Selection, library: Library) -> list[tuple[int, ...]]:
-    """All effects at each joint that has more than two; of two, the pair is asked."""
+def of_one_joint(unseen: NormalEquations, found: Selection) -> list[tuple[int, ...]]:
+    """All effects of each joint that has more than two; two that cancel each other are a pair."""
+    library = unseen.library
     places = [[i for i in found.indices if library.hypotheses[i].joint == j] for j in range(library.n_dof)]
     return [tuple(own) for own in places if len(own) > 2]
 
