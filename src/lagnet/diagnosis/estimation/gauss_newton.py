@@ -11,7 +11,7 @@ import numpy as np
 from lagnet.diagnosis.estimation.slots import Slots
 from lagnet.diagnosis.estimation.superposition import Superposition
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
-from lagnet.diagnosis.regression.block_gram import BLOCK
+from lagnet.diagnosis.regression.block_gram import block_length
 from lagnet.diagnosis.regression.normal_equations import (
     bounded_step,
     inverse_where_told,
@@ -39,7 +39,7 @@ def spread(pieces: Sequence[Segment], most: int = MOST_SAMPLES) -> tuple[Segment
 def blocks_of(problem: Problem, pieces: Sequence[Segment]) -> list[list[np.ndarray]]:
     """Rows of each block of time of each segment, long compared with the correlation time of the residual."""
     rate = problem.rate / max(1, int(median_step(pieces[0].keep)))
-    length = max(8, int(BLOCK * rate / problem.bandwidth))
+    length = block_length(sum(p.keep.size for p in pieces), rate, problem.bandwidth)
     counts = [max(1, round(p.keep.size / length)) for p in pieces]
     return [np.array_split(np.arange(p.keep.size), n) for p, n in zip(pieces, counts, strict=True)]
 

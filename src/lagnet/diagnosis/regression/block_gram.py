@@ -11,6 +11,8 @@ from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.diagnosis.regression.library import Library
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long compared with the residual's correlation time
+SHORTEST = 4.0  # the same where recordings are short
+FEWEST_BLOCKS = 6  # one for each fold: from fewer neither a held-out error nor a variance is told
 MOST_BLOCKS = 150  # longer recordings get longer blocks
 MOST_SAMPLES = 120_000  # at full rate, twice those of a refit: of longer recordings, segments spread over them are used
 FOLDS = 6  # of cross-validation
@@ -61,7 +63,7 @@ def collect_block_grams(
     pieces = spread_evenly(pieces, MOST_SAMPLES)
     total = sum(p.keep.size for p in pieces)
     reduced_rate = total / max(1e-9, sum(np.ptp(p.time[p.keep]) for p in pieces if p.keep.size > 1))
-    length = max(int(BLOCK * reduced_rate / problem.bandwidth), total // MOST_BLOCKS, 8)
+    length = max(block_length(total, reduced_rate, problem.bandwidth), total // MOST_BLOCKS)
     blocks = [np.array_split(np.arange(p.keep.size), max(1, round(p.keep.size / length))) for p in pieces]
     grams = {j: np.empty((sum(map(len, blocks)), *2 * (library.width(j) + 1,))) for j in joints}
     first = 0
@@ -73,6 +75,18 @@ def collect_block_grams(
     recordings = np.repeat([p.recording for p in pieces], [len(rows) for rows in blocks])
     by_joint = {**known, **grams}
     return BlockGrams(tuple(by_joint[j] for j in range(problem.n_dof)), np.array(counts, dtype=float), recordings)
+
+
+def block_length(samples: int, rate: float, bandwidth: float) -> int:
+    """Samples of a block of time: twelve periods of the bandwidth, or fewer where blocks would be too few.
+
+    Args:
+        samples: of all segments together.
+        rate: of these samples [Hz].
+        bandwidth: of the low-pass on torques [Hz].
+    """
+    period = rate / bandwidth
+    return max(int(min(BLOCK * period, max(SHORTEST * period, samples / FEWEST_BLOCKS))), 8)
 
 
 def _fill(grams: np.ndarray, table: np.ndarray, blocks: Sequence[np.ndarray]) -> None:
