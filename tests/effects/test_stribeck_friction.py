@@ -29,3 +29,11 @@ def test_a_joint_held_at_standstill_bears_the_whole_breakaway_torque():
     columns = effect_named("stribeck_friction").columns(motion, 0, {"vs": 0.0})
     np.testing.assert_array_equal(columns[:, 1], np.where(motion.v[:, 0] == 0.0, columns[:, 0], 0.0))
     np.testing.assert_array_equal(columns[20:, 1], 1.0)
+
+
+@pytest.mark.parametrize(("slowest", "seen"), [(0.0, 5.0), (0.002, 5.0 / np.e), (0.006, 5.0 * np.exp(-9.0))])
+def test_friction_that_rises_below_the_slowest_speed_is_not_seen(slowest, seen):
+    values, speed = {"Fc": 20.0, "Fs": 100.0, "vs": 0.002}, np.array([-1.0, slowest, 0.5])
+    plain, share = effect_named("stribeck_friction").further_term(values, speed)
+    assert plain == "coulomb_friction"
+    assert share == pytest.approx(seen, rel=1e-9)

@@ -126,8 +126,13 @@ class Effect(ABC):
         """Values of a plainer form, that stand unless those of the shape explain noticeably more; None: none is."""
         return None
 
-    def further_term(self, values: Mapping[str, float]) -> tuple[str, float] | None:
-        """A law of `contains` that this one is without a term, and that term over the rest; None by default."""
+    def further_term(self, values: Mapping[str, float], speed: np.ndarray) -> tuple[str, float] | None:
+        """A law of `contains` that this one is without a term, and that term over the rest; None by default.
+
+        Args:
+            values: of the law.
+            speed: shape (n,), those at which it was seen [rad/s]: the term is taken where it is largest.
+        """
         return None
 
     def bounds(self, shape: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:

@@ -51,8 +51,9 @@ class StribeckFriction(Effect):
     def values(self, coefficients: np.ndarray, shape: Mapping[str, float]) -> Values:
         return {"Fc": float(coefficients[0]), "Fs": float(coefficients[1]), "vs": float(shape["vs"])}
 
-    def further_term(self, values: Mapping[str, float]) -> tuple[str, float] | None:
-        return "coulomb_friction", values["Fs"] / max(values["Fc"], 1e-300)
+    def further_term(self, values: Mapping[str, float], speed: np.ndarray) -> tuple[str, float] | None:
+        seen = float(np.max(_boundary_share(speed, values["vs"]), initial=0.0))
+        return "coulomb_friction", seen * values["Fs"] / max(values["Fc"], 1e-300)
 
     def torque(self, motion: Motion, joint: int, values: Mapping[str, float]) -> np.ndarray:
         return self.columns(motion, joint, values) @ np.array([values["Fc"], values["Fs"]])
