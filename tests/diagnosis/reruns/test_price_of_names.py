@@ -1,4 +1,4 @@
-"""A narrower band with fewer names must predict better by a factor of three for each that is lost, and one more."""
+"""A narrower band must predict better by a factor of three, once more for each name lost, and for what layers lose."""
 
 from __future__ import annotations
 
@@ -18,14 +18,25 @@ def state(names: int, ambiguous: int = 0) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("names", "factor", "taken"), [(2, 2.9, 0), (2, 3.1, 1), (1, 8.9, 0), (1, 9.1, 1), (3, 3.1, 1)]
+    ("names", "factor", "layer", "taken"),
+    [
+        pytest.param(2, 2.9, 1.0, 0, id="little"),
+        pytest.param(2, 3.1, 1.0, 1, id="enough"),
+        pytest.param(1, 8.9, 1.0, 0, id="a name less"),
+        pytest.param(1, 9.1, 1.0, 1, id="a name less, paid for"),
+        pytest.param(3, 3.1, 1.0, 1, id="a name more"),
+        pytest.param(2, 6.1, 2.0, 1, id="loss of layers outweighed"),
+        pytest.param(2, 5.9, 2.0, 0, id="loss of layers"),
+        pytest.param(2, 2.9, 0.1, 0, id="gain of layers alone"),
+    ],
 )
-def test_each_name_that_is_lost_is_paid_for(monkeypatch: pytest.MonkeyPatch, names, factor, taken) -> None:
+def test_what_is_lost_is_paid_for(monkeypatch: pytest.MonkeyPatch, names, factor, layer, taken) -> None:
     first, second = state(2), state(names)
     for name, answer in (("against_given", first), ("is_puzzled", True), ("is_identified", False)):
         monkeypatch.setattr(band, name, lambda _, answer=answer: answer)
     monkeypatch.setattr(band, "_narrower", lambda *_: [second])
     monkeypatch.setattr(band, "_error", lambda one, *_: -np.log(factor) if one is second else 0.0)
+    monkeypatch.setattr(band, "_error_of_layer", lambda one, *_: np.log(layer) if one is second else 0.0)
     assert band.best_band(first, lambda _: second) is (first, second)[taken]
 
 
