@@ -50,6 +50,13 @@ def test_torque_that_no_such_links_have_leaves_the_model_as_it_is() -> None:
     assert towards_found_size(gram, -moment, prior) is prior
 
 
+def test_motion_that_says_nothing_of_the_links_together_leaves_the_model_as_it_is() -> None:
+    _, moment = cost()
+    prior = rounded(ARM.inertial_parameters())
+    unit = prior.ravel() / np.linalg.norm(prior)
+    assert towards_found_size(np.eye(unit.size) - np.outer(unit, unit), moment, prior) is prior
+
+
 def blocks(*per_joint: list[float]) -> np.ndarray:
     """Squared errors of each joint on six held-out blocks, shape (6, dof)."""
     return np.array(per_joint).T

@@ -24,6 +24,7 @@ GAIN, SURE = 0.02, 2.0  # of their error, summed over joints, and standard error
 LIGHTEST = 0.1  # of the mean mass of the links: a lighter one may be one that the model has no mass for
 RADIUS = 0.1  # [m] of the ball that replaces such a link
 FAR = 3.0  # times the modelled links, all together: lighter or heavier ones are drawn towards links of the found size
+ROUNDING = 1e-9  # of the sum of the sizes of all terms: a smaller sum is what rounding leaves
 WORSE = 1.5  # largest squared error of a joint over that of unconstrained parameters: beyond, bodies are not the cause
 
 
@@ -49,7 +50,7 @@ def consistent_unknowns(
     parts = [_constrained(design, f.fitted, choice, modelled) for f in folds]
     found = []
     for (x, bodies), *of_folds in zip(fits, *parts, strict=False):
-        if not np.any(squared_errors(design, sums, x) > limit):
+        if np.all(squared_errors(design, sums, x) <= limit):
             errors = [squared_errors(design, f.held_out, part) for f, (part, _) in zip(folds, of_folds, strict=True)]
             found.append((x, bodies, np.array(errors)))
     if not found:
@@ -106,10 +107,14 @@ def _constrained(
 def towards_found_size(gram: np.ndarray, moment: np.ndarray, prior: np.ndarray) -> np.ndarray:
     """s π₀ with s = argmin ½ s² π₀ᵀ G π₀ - s mᵀ π₀ where that is below a third or above three; else π₀.
 
-    Models of unknown masses hold a kilogram, a gram or nothing in the place of each.
+    Models of unknown masses hold a kilogram, a gram or nothing in the place of each. Where the recordings say nothing of
+    them all together, π₀ᵀ G π₀ is what rounding leaves, and so is s.
     """
     links = prior.ravel()
-    size = float(moment @ links) / max(float(links @ gram @ links), 1e-300)
+    told = float(links @ gram @ links)
+    if told <= ROUNDING * float(np.abs(links) @ np.abs(gram) @ np.abs(links)):
+        return prior
+    size = float(moment @ links) / told
     return prior if size <= 0.0 or 1.0 / FAR <= size <= FAR else size * prior
 
 
