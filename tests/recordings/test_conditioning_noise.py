@@ -78,3 +78,11 @@ def test_the_motion_s_bandwidth_is_that_of_its_quickest_harmonic_of_weight() -> 
     still = np.zeros_like(q)
     assert motion_bandwidth(np.stack([q, still], axis=1), 100.0) == pytest.approx(1.5, abs=0.05)
     assert motion_bandwidth(np.zeros((100, 2)), 100.0) == 0.0
+
+
+@pytest.mark.parametrize(("shakes", "expected"), [(37.0, 1.5), (6.0, 6.0)], ids=["vibration", "quick motion"])
+def test_what_shakes_a_decade_above_the_motion_is_none(shakes, expected) -> None:
+    time = np.arange(10_000) / 100.0
+    q = np.sin(2.0 * np.pi * 0.5 * time) + 0.2 * np.sin(2.0 * np.pi * 1.5 * time)
+    tremor = 0.1 / shakes * np.sin(2.0 * np.pi * shakes * time)  # a thirty-fifth of the speeds' power
+    assert motion_bandwidth((q + tremor)[:, None], 100.0) == pytest.approx(expected, abs=0.05)

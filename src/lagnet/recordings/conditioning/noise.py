@@ -8,6 +8,8 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 BINS = 9  # of a spectrum that are averaged before it is held against noise
+SHARE, MOST_OF_IT = 0.99, 0.95  # of the speeds' power, below whose frequency motion lies
+BEYOND = 10.0  # times the frequency of most of it: so much further lies what a drive or the clock adds, and no motion
 ABOVE = 20.0  # times the power of white noise from which a frequency belongs to the motion
 DIFFERENCES = 6  # order: smooth motion well below the sample rate leaves no trace in it
 
@@ -43,12 +45,12 @@ def band_noise(sigma: np.ndarray, rate: float, bandwidth: float, derivatives: in
     return np.asarray(sigma) * np.sqrt(power / (0.5 * rate))
 
 
-def motion_bandwidth(q: np.ndarray, rate: float, share: float = 0.99) -> float:
-    """Frequency [Hz] below which the given share of the joint speeds' power lies: the median over joints that move.
+def motion_bandwidth(q: np.ndarray, rate: float) -> float:
+    """Frequency [Hz] below which 99 % of the joint speeds' power lies: the median over joints that move.
 
+    Where that is a decade beyond the frequency of 95 %, the latter: a vibration or a jittering clock is no motion.
     Frequencies at which noise is not far below count for nothing. Speed, not acceleration, is weighed, because the
-    square of frequency once more would let vibration and quantisation
-    pass for motion.
+    square of frequency once more would let vibration and quantisation pass for motion.
 
     Args:
         q: shape (n, dof), positions on an even clock.
@@ -61,9 +63,11 @@ def motion_bandwidth(q: np.ndarray, rate: float, share: float = 0.99) -> float:
     by_noise = white_noise(q) ** 2 * np.sum(window**2)
     found = np.abs(np.fft.rfft(swept, axis=0)) ** 2
     power = np.where(uniform_filter1d(found, BINS, axis=0) > ABOVE * by_noise, found, 0.0) * frequency[:, None] ** 2
-    moving = np.std(q, axis=0) > 0.1 * np.max(np.std(q, axis=0))
-    found = [_share_below(power[:, j], frequency, share) for j in np.flatnonzero(moving)]
-    return float(np.median(found)) if found else 0.0
+    moving = np.flatnonzero(np.std(q, axis=0) > 0.1 * np.max(np.std(q, axis=0)))
+    if not moving.size:
+        return 0.0
+    usual, most = (np.median([_share_below(power[:, j], frequency, s) for j in moving]) for s in (SHARE, MOST_OF_IT))
+    return float(most if usual > BEYOND * most else usual)
 
 
 def _share_below(power: np.ndarray, frequency: np.ndarray, share: float) -> float:
