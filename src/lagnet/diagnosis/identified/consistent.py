@@ -107,8 +107,8 @@ def _constrained(
 def towards_found_size(gram: np.ndarray, moment: np.ndarray, prior: np.ndarray) -> np.ndarray:
     """s π₀ with s = argmin ½ s² π₀ᵀ G π₀ - s mᵀ π₀ where that is below a third or above three; else π₀.
 
-    Models of unknown masses hold a kilogram, a gram or nothing in the place of each. Where the recordings say nothing of
-    them all together, π₀ᵀ G π₀ is what rounding leaves, and so is s.
+    Models of unknown masses hold a kilogram, a gram or nothing in the place of each. Where the recordings say nothing
+    of them all together, π₀ᵀ G π₀ is what rounding leaves, and so is s.
     """
     links = prior.ravel()
     told = float(links @ gram @ links)
