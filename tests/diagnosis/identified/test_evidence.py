@@ -67,3 +67,20 @@ def test_a_joint_without_torque_or_samples_changes_nothing(design) -> None:
     found = fit_ridge(one, joint_equations(one), INEFFICIENCY)
     assert np.all(np.isfinite(found.x))
     np.testing.assert_allclose(found.x[: BODIES + OWN], TRUE[: BODIES + OWN], atol=0.1)
+
+
+def test_what_motion_does_not_tell_apart_has_no_huge_weights(design) -> None:
+    """Dry friction and an offset of a joint that turns one way but for a moment, at which something else acts."""
+    joint = design.joints[1]
+    columns, target = joint.columns.copy(), joint.target.copy()
+    columns[:, -1] = 1.0
+    columns[:, -2] = np.where(np.arange(N) == 7, 0.97, 1.0)
+    target[7] += 3.0
+    nearly = JointRows(columns, target, np.ones(N, dtype=bool), joint.unknowns)
+    two = Design((design.joints[0], nearly), design.groups, (), BODIES, design.scale, design.piece)
+    found = fit_ridge(two, joint_equations(two), INEFFICIENCY)
+    own = found.x[joint.unknowns[-2:]]
+    assert np.all(np.abs(own) < 10.0)
+    assert own.sum() == pytest.approx(
+        target.mean() - columns[:, :-2].mean(axis=0) @ found.x[joint.unknowns[:-2]], abs=0.1
+    )

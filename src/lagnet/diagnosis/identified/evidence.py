@@ -17,7 +17,7 @@ from lagnet.diagnosis.identified.design import Design
 
 STEPS = 30  # of the fixed point
 LEAST_PRECISION, MOST_PRECISION = 1e-6, 1e8  # α: columns are in parts of the joint's torque
-FREE = 1e-8  # α of unknowns without a prior
+FREE = 0.1  # α of unknowns without a prior of their own: torque up to some three times that of the joint
 START = 1e-4  # initial α
 EXCLUDED = 1e14  # α of unknowns that are not fitted
 ROUNDING = 1e-10  # of the mean diagonal
