@@ -19,7 +19,7 @@ from lagnet.diagnosis.identified.real_inertia import (
     without_negative_rotors,
 )
 from lagnet.diagnosis.identified.rest import friction_at_rest
-from lagnet.diagnosis.identified.reversals import late_bristles
+from lagnet.diagnosis.identified.reversals import excessive_bristles, late_bristles
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel
@@ -140,7 +140,7 @@ def _fitted(
 def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> tuple[Design, Choice | None]:
     """The solution, without friction that no gear has or that is late at reversals; and the equations that it is of."""
     while (choice := choose(design)) is not None:
-        spared = _impossible(design, choice)
+        spared = np.concatenate([_impossible(design, choice), excessive_bristles(design, choice)])
         if not spared.size:
             spared = late_bristles(problem, pieces, design, choice)
         if not spared.size:
