@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.diagnosis.conftest import Plant
@@ -9,6 +11,7 @@ from validation.far_models.plants import draw
 from validation.far_models.study import FLOOR
 from validation.real_arms.least_squares import LeastSquares
 
+from lagnet.diagnosis.identified.design import FEWEST
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.identified.verdict_entry import identified_as_json
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
@@ -127,6 +130,21 @@ def test_joints_that_rest_are_not_made_worse(held: tuple[int, ...]) -> None:
     before = unseen_errors(problem, lambda p: p.load)
     after = before if found is None else unseen_errors(problem, along(corrected(problem, found)))
     assert np.all(after < 1.1 * before + 0.005**2 * problem.scale**2)
+
+
+@pytest.mark.parametrize(("samples", "told"), [(FEWEST - 1, False), (5 * FEWEST, True)])
+def test_a_joint_has_functions_where_enough_samples_of_it_move(samples: int, told: bool) -> None:
+    arm, joint = random_arm(3, seed=5, kinds=("revolute",)), 1
+    problem = posed(arm, Plant(arm, [saturating_friction(arm)]))
+    (piece,) = problem.fit
+    counts = piece.counts.copy()
+    moving = np.flatnonzero(counts[:, joint])
+    counts[:, joint] = False
+    counts[moving[np.linspace(0, moving.size - 1, samples).round().astype(int)], joint] = True
+    found = identify(replace(problem, fit=(piece.with_counts(counts),)), ())
+    own = [w for t, w in zip(found.layer.terms, found.layer.weights, strict=True) if joint in t.rows]
+    assert np.any(own) == told
+    assert np.any(found.layer.weights)
 
 
 def test_torque_in_phase_with_minus_a_is_speed_that_lags_and_no_inertia() -> None:

@@ -15,6 +15,7 @@ from lagnet.rigid_body.inertia import BODY
 from lagnet.types import Trajectory
 
 RESTING = 0.01  # of a joint's usual largest speed: below, it is at rest
+FEWEST = 12  # filtered samples in motion, three for each function of plain least squares: fewer say nothing of a joint
 ROUNDING = 1e-9  # of the largest column: a smaller one is zero
 
 
@@ -159,10 +160,11 @@ def _joint_rows(
 
 
 def _scales(problem: Problem, rows: Sequence[JointRows], n: int) -> np.ndarray:
-    """max_j rms(column) / σ_τj of each column over the joints, shape (n,)."""
+    """max_j rms(column) / σ_τj of each column over the joints that tell something, shape (n,)."""
     scale = np.zeros(n)
     for joint, r in enumerate(rows):
-        size = np.sqrt(np.mean(r.columns[r.valid] ** 2, axis=0)) if r.valid.any() else np.zeros(r.unknowns.size)
+        told = r.columns[r.valid] if r.valid.sum() >= FEWEST else np.zeros((1, r.unknowns.size))
+        size = np.sqrt(np.mean(told**2, axis=0))
         scale[r.unknowns] = np.maximum(scale[r.unknowns], size / max(float(problem.scale[joint]), 1e-12))
     return np.where(scale > ROUNDING * scale.max(initial=0.0), scale, 0.0)
 
