@@ -21,11 +21,11 @@ from lagnet.diagnosis.identified.real_inertia import columns_of
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.rest import resting
 
-MOST_HELD = 2.0  # of the dry friction of a joint, friction of its load among it: what a bristle may hold
+MOST_HELD = 5.0  # times the dry friction of a joint, friction of its load among it: what a bristle may hold
 
 
 def excessive_bristles(design: Design, choice: Choice) -> np.ndarray:
-    """Unknowns of bristles that hold more than twice the dry friction of their joint, |w| > 2 (|F| + |K| rms load)."""
+    """Unknowns of bristles that hold far more than the dry friction of their joint, |w| > 5 (|F| + |K| rms load)."""
     weights, dry = design.unscaled(choice.ridge.x), np.zeros(len(design.joints))
     for i, term in (*columns_of(design, "dry"), *columns_of(design, "load")):
         rows = design.joints[term.joint]
