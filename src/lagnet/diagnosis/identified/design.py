@@ -26,7 +26,7 @@ class Group:
     Args:
         name: of the functions of motion, "bodies" for inertial parameters.
         unknowns: shape (k,), their indices in x.
-        free: whether they have no prior.
+        free: whether their prior is a wide one that nothing changes.
         joint: the joint whose functions they weight; None for bodies and pairs.
         pair: the two joints that they couple; None for all others.
         optional: whether they are used only where held-out motion is predicted better with them.

@@ -10,7 +10,7 @@ import numpy as np
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.models.corrected.motion_terms import BENDS, OVER_POSITION, MotionTerm
 
-CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: without a prior
+CORE = ("viscous", "dry", "offset", "rotor")  # those of plain least squares: with a wide, fixed prior
 GAIN = "gain"  # w of a recorded torque (1 + w) τ: of all joints but one where they are told against each other
 PATH = "path"  # friction that changes over the range of a joint
 OF_LOAD = ("load", GAIN)  # kinds of functions of the torque of the bodies
@@ -28,7 +28,7 @@ class TermGroup:
     Args:
         name: of the group.
         terms: the functions.
-        free: whether the weights have no prior.
+        free: whether the prior of the weights is wide and fixed.
         pair: the joints that it couples; None for a group of one joint.
         optional: whether it is used only where it predicts held-out motion better, a pair where far better.
     """

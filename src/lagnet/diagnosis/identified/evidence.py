@@ -17,7 +17,7 @@ from lagnet.diagnosis.identified.design import Design
 
 STEPS = 30  # of the fixed point
 LEAST_PRECISION, MOST_PRECISION = 1e-6, 1e8  # α: columns are in parts of the joint's torque
-FREE = 0.1  # α of unknowns without a prior of their own: torque up to some three times that of the joint
+FREE = 0.1  # α of free unknowns, fixed: torque up to some three times that of the joint
 START = 1e-4  # initial α
 EXCLUDED = 1e14  # α of unknowns that are not fitted
 ROUNDING = 1e-10  # of the mean diagonal
@@ -168,7 +168,7 @@ class _Groups:
     Args:
         of: shape (n,), index of each unknown's group.
         sizes: shape (n_groups,), number of fitted unknowns.
-        free: shape (n,), whether an unknown has no prior.
+        free: shape (n,), whether an unknown has the wide, fixed prior.
     """
 
     of: np.ndarray
