@@ -12,7 +12,7 @@ from lagnet.diagnosis.regression.library import Library
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long compared with the residual's correlation time
 SHORTEST = 4.0  # the same where recordings are short
-FEWEST_BLOCKS = 6  # one for each fold: from fewer neither a held-out error nor a variance is told
+FEWEST_BLOCKS = 3  # from fewer neither a held-out error nor a variance is told
 MOST_BLOCKS = 150  # longer recordings get longer blocks
 MOST_SAMPLES = 120_000  # at full rate, twice those of a refit: of longer recordings, segments spread over them are used
 FOLDS = 6  # of cross-validation
