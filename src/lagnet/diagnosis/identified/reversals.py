@@ -4,8 +4,9 @@ Near zero speed the sign of a noisy speed is not known, and samples there are no
 little on what is fitted and be late where nothing asked them: at twice the error of plain dry friction on 20 s of a
 UR10 with 1 mrad of position noise. Samples in motion are predicted, all of them, so all of them are asked.
 
-Bristles hold no more than dry friction does. Where a joint hardly turns back they are columns of almost nothing, and
-what else is left there may give them any weight: 570 N m beside 20 N m of dry friction on three seconds of a UR10e.
+Bristles of a gear hold no more than its dry friction. Where a joint hardly turns back they are columns of almost
+nothing, and what else is left there may give them any weight: 570 N m beside 20 N m of dry friction on three seconds
+of a UR10e. A few times the dry friction is left to them, as they may stand for another cause.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """(Fc + Fs exp(−(v/vs)²)) s(v) with Fs = 0 is Fc s(v): a law whose further term vanishes is the plainer one.
 
 A term that vanishes at every sample that counts was not seen, however large its parameter: friction that rises at a
-fiftieth of the slowest recorded speed is what other causes do around reversals.
+third of the slowest recorded speed is what other causes do around reversals.
 """
 
 from __future__ import annotations
