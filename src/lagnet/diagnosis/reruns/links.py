@@ -51,8 +51,8 @@ def _beside_free_links(first: DiagnosisState, run: Callable[[Problem], Diagnosis
         return second
     if {(e.effect, e.joint) for e in second.refit.effects} & _imitations(first):
         return None
-    if puzzled:
-        return None if is_puzzled(against_given(second)) else second
+    if puzzled and not is_puzzled(against_given(second)):
+        return second
     return second if not fewer_names(second, first) and predicts_better(second, first) else None
 
 
