@@ -22,7 +22,7 @@ def test_matrices_of_joints_that_are_known_are_not_collected_anew(plant, arm) ->
 
 @pytest.mark.parametrize(
     ("seconds", "periods"),
-    [(60.0, 12.0), (7.2, 12.0), (4.8, 8.0), (2.4, 4.0), (1.2, 4.0)],
+    [(60.0, 12.0), (14.4, 12.0), (9.6, 8.0), (4.8, 4.0), (1.2, 4.0)],
     ids=["long", "just long enough", "short", "shorter", "shortest"],
 )
 def test_blocks_are_shorter_where_they_would_be_too_few(seconds, periods) -> None:

@@ -12,10 +12,9 @@ from lagnet.diagnosis.regression.library import Library
 
 BLOCK = 12.0  # length of a block, in periods of the bandwidth: long compared with the residual's correlation time
 SHORTEST = 4.0  # the same where recordings are short
-FEWEST_BLOCKS = 3  # from fewer neither a held-out error nor a variance is told
 MOST_BLOCKS = 150  # longer recordings get longer blocks
 MOST_SAMPLES = 120_000  # at full rate, twice those of a refit: of longer recordings, segments spread over them are used
-FOLDS = 6  # of cross-validation
+FOLDS = 6  # of cross-validation, and the blocks that there are at least where none of them becomes too short
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +77,7 @@ def collect_block_grams(
 
 
 def block_length(samples: int, rate: float, bandwidth: float) -> int:
-    """Samples of a block of time: twelve periods of the bandwidth, or fewer where blocks would be too few.
+    """Samples of a block of time: twelve periods of the bandwidth, or fewer where some folds would be empty.
 
     Args:
         samples: of all segments together.
@@ -86,7 +85,7 @@ def block_length(samples: int, rate: float, bandwidth: float) -> int:
         bandwidth: of the low-pass on torques [Hz].
     """
     period = rate / bandwidth
-    return max(int(min(BLOCK * period, max(SHORTEST * period, samples / FEWEST_BLOCKS))), 8)
+    return max(int(min(BLOCK * period, max(SHORTEST * period, samples / FOLDS))), 8)
 
 
 def _fill(grams: np.ndarray, table: np.ndarray, blocks: Sequence[np.ndarray]) -> None:
