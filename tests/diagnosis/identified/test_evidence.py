@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.identified.design import Design, Group, JointRows
-from lagnet.diagnosis.identified.evidence import EXCLUDED, Ridge, fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import EXCLUDED, Ridge, fit_ridge
 
 BODIES, OWN, N = 4, 3, 200
 TRUE = np.array([1.0, -0.5, 0.0, 0.3, 2.0, 0.0, -1.0, 0.5, 0.0, 0.7])

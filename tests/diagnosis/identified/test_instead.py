@@ -7,7 +7,7 @@ import pytest
 from tests.diagnosis.conftest import Plant
 
 from lagnet.diagnosis.identified import folds
-from lagnet.diagnosis.identified.evidence import joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.fit import identify
 from lagnet.diagnosis.identified.instead import instead_of_names, kept_among
 from lagnet.diagnosis.identified.verdict_entry import INSTEAD, identified_as_json

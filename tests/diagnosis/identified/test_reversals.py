@@ -9,7 +9,8 @@ from tests.diagnosis.identified.test_identify import along, corrected, unseen_er
 
 from lagnet.diagnosis.identified import fit
 from lagnet.diagnosis.identified.design import Design, Group, JointRows
-from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.diagnosis.identified.reversals import excessive_bristles
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model

@@ -14,7 +14,7 @@ from contextlib import suppress
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design
-from lagnet.diagnosis.identified.evidence import JointEquations
+from lagnet.diagnosis.identified.equations import JointEquations
 from lagnet.diagnosis.identified.folds import Choice, block_folds
 from lagnet.rigid_body.consistent_fit import consistent_path
 from lagnet.rigid_body.inertia import BODY, from_pseudo_inertia, parameters_of_body, pseudo_inertia

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from lagnet.diagnosis.identified.design import Design
+from lagnet.diagnosis.identified.equations import LEAST_ERROR, JointEquations
 
 STEPS = 30  # of the fixed point
 LEAST_PRECISION, MOST_PRECISION = 1e-6, 1e8  # α: columns are in parts of the joint's torque
@@ -21,32 +22,9 @@ FREE = 0.1  # α of free unknowns, fixed: torque up to some three times that of 
 START = 1e-4  # initial α
 EXCLUDED = 1e14  # α of unknowns that are not fitted
 ROUNDING = 1e-10  # of the mean diagonal
-LEAST_ERROR = 1e-12  # of the power of the target
 LEAST_NOISE = 1e-150  # [N² m²] of a joint without torque, whose reciprocal is still a number
 
 factored, inverted, solved = get_lapack_funcs(("potrf", "potri", "potrs"), dtype=np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class JointEquations:
-    """AᵀA x = Aᵀy of one joint: gram (p, p), moment (p,), power |y|² and number of samples."""
-
-    gram: np.ndarray
-    moment: np.ndarray
-    power: float
-    n_samples: float
-
-    def __sub__(self, other: JointEquations) -> JointEquations:
-        return JointEquations(
-            self.gram - other.gram,
-            self.moment - other.moment,
-            self.power - other.power,
-            self.n_samples - other.n_samples,
-        )
-
-    def error(self, x: np.ndarray) -> float:
-        """|y − A x|², at least rounding."""
-        return max(self.power - 2.0 * float(x @ self.moment) + float(x @ self.gram @ x), LEAST_ERROR * self.power)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +42,6 @@ class Ridge:
     covariance: np.ndarray
     variance: np.ndarray
     precision: np.ndarray
-
-
-def joint_equations(design: Design, rows: np.ndarray | slice = slice(None)) -> tuple[JointEquations, ...]:
-    """Normal equations of each joint over some rows, without samples at rest."""
-    out = []
-    for joint in design.joints:
-        keep = joint.valid[rows]
-        a, y = joint.columns[rows][keep], joint.target[rows][keep]
-        out.append(JointEquations(a.T @ a, a.T @ y, float(y @ y), float(keep.sum())))
-    return tuple(out)
 
 
 def fit_ridge(
@@ -108,6 +76,25 @@ def fit_ridge(
         variance = np.maximum(system.errors(x) / n_samples, LEAST_ERROR * power)
     x, lower = _solve(system, precision, inefficiency * variance)
     return _over_all(design.n_unknowns, system.fitted, Ridge(x, lower, variance, precision))
+
+
+def solve_beside(design: Design, sums: Sequence[JointEquations], inefficiency: float, beside: Ridge) -> np.ndarray:
+    """Posterior mean of x, shape (n_unknowns,), for the α and σ² of a fit to other rows.
+
+    Args:
+        design: the equations.
+        sums: normal equations of each joint.
+        inefficiency: s, samples with the information of one.
+        beside: the fit; what it excludes is zero.
+    """
+    n, fitted = design.n_unknowns, np.flatnonzero(beside.precision < EXCLUDED)
+    gram, moment = np.zeros((n, n)), np.zeros(n)
+    for s, joint, weight in zip(sums, design.joints, _weights(inefficiency * beside.variance), strict=True):
+        gram[np.ix_(joint.unknowns, joint.unknowns)] += weight * s.gram
+        moment[joint.unknowns] += weight * s.moment
+    x = np.zeros(n)
+    x[fitted] = solved(_factor(gram[np.ix_(fitted, fitted)], beside.precision[fitted]), moment[fitted], lower=1)[0]
+    return x
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,13 +139,22 @@ def _solve(system: _System, precision: np.ndarray, noise: np.ndarray) -> tuple[n
     n = system.fitted.size
     if not n:
         return np.zeros(0), np.zeros((0, 0))
-    weights = 1.0 / np.maximum(noise, LEAST_NOISE)
-    gram = (weights @ system.grams.reshape(len(noise), n * n)).reshape(n, n)
-    gram[np.diag_indices(n)] += precision + ROUNDING * np.trace(gram) / n
+    weights = _weights(noise)
+    factor = _factor((weights @ system.grams.reshape(len(noise), n * n)).reshape(n, n), precision)
+    return solved(factor, weights @ system.moments, lower=1)[0], inverted(factor, lower=1)[0]
+
+
+def _weights(noise: np.ndarray) -> np.ndarray:
+    return 1.0 / np.maximum(noise, LEAST_NOISE)
+
+
+def _factor(gram: np.ndarray, precision: np.ndarray) -> np.ndarray:
+    """Lower Cholesky factor of gram + diag α, in the place of gram."""
+    gram[np.diag_indices_from(gram)] += precision + ROUNDING * np.trace(gram) / max(1, len(gram))
     factor, failed = factored(gram, lower=1)
     if failed:
         raise np.linalg.LinAlgError("the normal equations are not positive definite")
-    return solved(factor, weights @ system.moments, lower=1)[0], inverted(factor, lower=1)[0]
+    return factor
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,8 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
 from lagnet.diagnosis.identified.dictionary import GAIN, OF_LOAD, TermGroup, lag_groups, term_groups
-from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import Choice, choose
 from lagnet.diagnosis.identified.real_inertia import (
     columns_of,

@@ -10,7 +10,8 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, Group
 from lagnet.diagnosis.identified.dictionary import GAIN, PATH
-from lagnet.diagnosis.identified.evidence import START, JointEquations, Ridge, fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import JointEquations, joint_equations
+from lagnet.diagnosis.identified.evidence import START, Ridge, fit_ridge, solve_beside
 
 FOLDS = 6
 GUARD = 3  # samples left out on both sides of a block: the length of the filter's response
@@ -78,9 +79,10 @@ def choose(design: Design, inefficiencies: Sequence[float] = INEFFICIENCIES) -> 
     excluded = frozenset(i for i, g in enumerate(groups) if g.optional)
     best = min(_fits_by_inefficiency(rows, inefficiencies, excluded), key=lambda c: c.score)
     pairs, alone = {g.pair for g in groups if g.pair}, [i for i in excluded if _is_alone(groups[i])]
-    needed = frozenset(i for i in alone if _is_needed(rows, best, i))
-    needed = needed.union(*(_coupling(rows, best, pair) for pair in pairs))
-    needed |= _scales(rows, best, needed)
+    near = _beside(rows, best.ridge, best.inefficiency, excluded)
+    needed = frozenset(i for i in alone if _is_needed(rows, near, i))
+    needed = needed.union(*(_coupling(rows, near, pair) for pair in pairs))
+    needed |= _scales(rows, near, needed)
     told = {groups[i].joint for i in needed}
     idle = {j for j in range(len(design.joints)) if best.nmse[j] > IDLE and j not in told}
     if needed or idle:
@@ -106,9 +108,10 @@ class _Rows:
 def _coupling(rows: _Rows, best: Choice, pair: tuple[int, int]) -> frozenset[int]:
     """The groups that couple a pair of joints, where one of them is predicted far better with them; else none."""
     own = frozenset(i for i, g in enumerate(rows.design.groups) if g.pair == pair)
-    if not np.any(_fitted_ratio(rows, best, own)[list(pair)] < MAYBE):
+    ridge = _freed(rows, best, own)
+    if not np.any(_fitted_ratio(ridge, best)[list(pair)] < MAYBE):
         return frozenset()
-    coupled = _validated(rows, best.inefficiency, best.excluded - own)
+    coupled = _beside(rows, ridge, best.inefficiency, best.excluded - own)
     return own if np.any((coupled.nmse < COUPLED * best.nmse)[list(pair)]) else frozenset()
 
 
@@ -119,10 +122,11 @@ def _scales(rows: _Rows, best: Choice, needed: frozenset[int]) -> frozenset[int]
     all joints free, that of the bodies would be, too.
     """
     gains = frozenset(i for i, g in enumerate(rows.design.groups) if g.name == GAIN)
-    found, current = frozenset[int](), _validated(rows, best.inefficiency, best.excluded - needed) if needed else best
+    found, current = frozenset[int](), _with(rows, best, needed) if needed else best
     while len(found) < len(gains) - 1:
-        likely = [i for i in gains - found if np.prod(_fitted_ratio(rows, current, frozenset({i}))) < MAYBE]
-        tried = {i: _validated(rows, best.inefficiency, current.excluded - {i}) for i in likely}
+        freed = {i: _freed(rows, current, frozenset({i})) for i in gains - found}
+        likely = [i for i, ridge in freed.items() if np.prod(_fitted_ratio(ridge, current)) < MAYBE]
+        tried = {i: _beside(rows, freed[i], best.inefficiency, current.excluded - {i}) for i in likely}
         most = min(tried, key=lambda i: tried[i].score, default=None)
         if most is None or tried[most].score > current.score + np.log(SCALED):
             break
@@ -138,7 +142,7 @@ def _is_needed(rows: _Rows, best: Choice, index: int) -> bool:
         return False
     if _screened_ratio(rows, best, joint, index) > SCREENED:
         return False
-    return _validated(rows, best.inefficiency, best.excluded - {index}).score < best.score + float(np.log(better))
+    return _with(rows, best, frozenset({index})).score < best.score + float(np.log(better))
 
 
 def _variance_share(rows: _Rows, joint: int) -> float:
@@ -161,14 +165,28 @@ def _screened_ratio(rows: _Rows, best: Choice, joint: int, index: int) -> float:
     return 1.0 - gained / max(sums.error(x), 1e-300)
 
 
-def _fitted_ratio(rows: _Rows, best: Choice, own: frozenset[int]) -> np.ndarray:
-    """Squared error on all rows, to which both are fitted, with some excluded groups over that without, (dof,)."""
+def _with(rows: _Rows, best: Choice, own: frozenset[int]) -> Choice:
+    return _beside(rows, _freed(rows, best, own), best.inefficiency, best.excluded - own)
+
+
+def _freed(rows: _Rows, best: Choice, own: frozenset[int]) -> Ridge:
+    """The fit to all rows from another one, with some excluded groups free."""
     precision = best.ridge.precision.copy()
     for i in own:
         precision[rows.design.groups[i].unknowns] = START
     start = replace(best.ridge, precision=precision)
-    ridge = fit_ridge(rows.design, rows.total, best.inefficiency, start, STEPS, best.excluded - own)
-    return ridge.variance / np.maximum(best.ridge.variance, 1e-300)
+    return fit_ridge(rows.design, rows.total, best.inefficiency, start, STEPS, best.excluded - own)
+
+
+def _fitted_ratio(ridge: Ridge, before: Choice) -> np.ndarray:
+    """Squared error on all rows, to which both are fitted, over that of another fit, shape (dof,)."""
+    return ridge.variance / np.maximum(before.ridge.variance, 1e-300)
+
+
+def _beside(rows: _Rows, ridge: Ridge, inefficiency: float, excluded: frozenset[int]) -> Choice:
+    """A fit to all rows, and the error on each block of the fit to the others with the same α and σ²."""
+    xs = [solve_beside(rows.design, fold.fitted, inefficiency, ridge) for fold in rows.folds]
+    return Choice(ridge, inefficiency, excluded, _unseen(rows, xs))
 
 
 def _fits_by_inefficiency(rows: _Rows, inefficiencies: Sequence[float], excluded: frozenset[int]) -> Iterator[Choice]:
@@ -180,11 +198,16 @@ def _fits_by_inefficiency(rows: _Rows, inefficiencies: Sequence[float], excluded
 
 
 def _validated(rows: _Rows, inefficiency: float, excluded: frozenset[int], start: Ridge | None = None) -> Choice:
-    """A fit to all rows, and the error on each block of the fit to the others, from the same α and σ²."""
-    design = rows.design
-    ridge = fit_ridge(design, rows.total, inefficiency, start, FIRST if start is None else STEPS, excluded)
-    errors = np.zeros(len(design.joints))
-    for fold in rows.folds:
-        part = fit_ridge(design, fold.fitted, inefficiency, ridge, STEPS, excluded)
-        errors += [s.error(part.x[j.unknowns]) for s, j in zip(fold.held_out, design.joints, strict=True)]
-    return Choice(ridge, inefficiency, excluded, errors / np.array([max(s.power, 1e-300) for s in rows.total]))
+    """A fit to all rows, and the error on each block of the fit to the others from the same α and σ²."""
+    steps = FIRST if start is None else STEPS
+    ridge = fit_ridge(rows.design, rows.total, inefficiency, start, steps, excluded)
+    parts = [fit_ridge(rows.design, fold.fitted, inefficiency, ridge, STEPS, excluded) for fold in rows.folds]
+    return Choice(ridge, inefficiency, excluded, _unseen(rows, [part.x for part in parts]))
+
+
+def _unseen(rows: _Rows, xs: Sequence[np.ndarray]) -> np.ndarray:
+    """Squared error on each block with an x of its own, over the power of the target, shape (dof,)."""
+    errors, joints = np.zeros(len(rows.design.joints)), rows.design.joints
+    for x, fold in zip(xs, rows.folds, strict=True):
+        errors += [s.error(x[j.unknowns]) for s, j in zip(fold.held_out, joints, strict=True)]
+    return errors / np.array([max(s.power, 1e-300) for s in rows.total])

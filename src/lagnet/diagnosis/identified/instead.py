@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lagnet.diagnosis.identified.evidence import joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.fit import Identified, identify
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named

@@ -10,7 +10,8 @@ import numpy as np
 
 from lagnet.diagnosis.identified.consistent import consistent_unknowns, squared_errors
 from lagnet.diagnosis.identified.design import Design
-from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.models.corrected.changed_bodies import named_body_change

@@ -16,7 +16,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, JointRows, usual_rest
-from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import STEPS, Choice
 from lagnet.diagnosis.identified.real_inertia import columns_of
 from lagnet.diagnosis.problem.problem import Problem

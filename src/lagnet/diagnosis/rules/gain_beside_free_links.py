@@ -14,7 +14,8 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import FitSegment, make_design
 from lagnet.diagnosis.identified.dictionary import CORE, TermGroup
-from lagnet.diagnosis.identified.evidence import fit_ridge, joint_equations
+from lagnet.diagnosis.identified.equations import joint_equations
+from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.fit import fit_segment
 from lagnet.diagnosis.problem.problem import spread_evenly
 from lagnet.diagnosis.rules.candidate import Candidate
