@@ -7,7 +7,7 @@ import pytest
 
 from lagnet.diagnosis.identified.design import Design, Group, JointRows
 from lagnet.diagnosis.identified.equations import joint_equations
-from lagnet.diagnosis.identified.evidence import EXCLUDED, Ridge, fit_ridge
+from lagnet.diagnosis.identified.evidence import EXCLUDED, Ridge, fit_ridge, solve_beside
 
 BODIES, OWN, N = 4, 3, 200
 TRUE = np.array([1.0, -0.5, 0.0, 0.3, 2.0, 0.0, -1.0, 0.5, 0.0, 0.7])
@@ -59,6 +59,19 @@ def test_an_excluded_group_is_zero_and_the_rest_is_fitted_as_if_it_were_not_ther
     assert not found.covariance[gone].any()
     assert np.all(found.precision[gone] == EXCLUDED)
     np.testing.assert_allclose(found.x, without.x, rtol=1e-10)
+
+
+@pytest.mark.parametrize("excluded", [frozenset(), frozenset({1}), frozenset({0, 1, 2})], ids=["all", "some", "none"])
+def test_other_rows_have_the_posterior_mean_for_given_precisions(design, excluded) -> None:
+    found = fit_ridge(design, joint_equations(design), INEFFICIENCY, excluded=excluded)
+    np.testing.assert_allclose(solve_beside(design, joint_equations(design), INEFFICIENCY, found), found.x, rtol=1e-9)
+    rows, (table, target) = slice(0, N // 2), rows_of(design, found)
+    half = np.tile(np.arange(N) < N // 2, 2)
+    fitted = np.flatnonzero(found.precision < EXCLUDED)
+    own, expected = table[half][:, fitted], np.zeros(design.n_unknowns)
+    expected[fitted] = np.linalg.solve(own.T @ own + np.diag(found.precision[fitted]), own.T @ target[half])
+    of_half = solve_beside(design, joint_equations(design, rows), INEFFICIENCY, found)
+    np.testing.assert_allclose(of_half, expected, rtol=1e-6, atol=1e-12)
 
 
 def test_a_joint_without_torque_or_samples_changes_nothing(design) -> None:

@@ -88,11 +88,12 @@ def solve_beside(design: Design, sums: Sequence[JointEquations], inefficiency: f
         beside: the fit; what it excludes is zero.
     """
     n, fitted = design.n_unknowns, np.flatnonzero(beside.precision < EXCLUDED)
-    gram, moment = np.zeros((n, n)), np.zeros(n)
+    x, gram, moment = np.zeros(n), np.zeros((n, n)), np.zeros(n)
+    if not fitted.size:
+        return x
     for s, joint, weight in zip(sums, design.joints, _weights(inefficiency * beside.variance), strict=True):
         gram[np.ix_(joint.unknowns, joint.unknowns)] += weight * s.gram
         moment[joint.unknowns] += weight * s.moment
-    x = np.zeros(n)
     x[fitted] = solved(_factor(gram[np.ix_(fitted, fitted)], beside.precision[fitted]), moment[fitted], lower=1)[0]
     return x
 
