@@ -11,7 +11,7 @@ from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, 
 from lagnet.diagnosis.identified.dictionary import GAIN, OF_LOAD, TermGroup, lag_groups, term_groups
 from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.evidence import fit_ridge
-from lagnet.diagnosis.identified.folds import Choice, choose
+from lagnet.diagnosis.identified.folds import INEFFICIENCIES, Choice, choose
 from lagnet.diagnosis.identified.real_inertia import (
     columns_of,
     layer_of,
@@ -140,13 +140,14 @@ def _fitted(
 
 def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> tuple[Design, Choice | None]:
     """The solution, without friction that no gear has or that is late at reversals; and the equations that it is of."""
-    while (choice := choose(design)) is not None:
+    candidates: Sequence[float] = INEFFICIENCIES
+    while (choice := choose(design, candidates)) is not None:
         spared = np.concatenate([_impossible(design, choice), excessive_bristles(design, choice)])
         if not spared.size:
             spared = late_bristles(problem, pieces, design, choice)
         if not spared.size:
             break
-        design = design.without(spared)
+        design, candidates = design.without(spared), (choice.inefficiency,)
     return design, choice
 
 
