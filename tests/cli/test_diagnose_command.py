@@ -7,13 +7,18 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
 import lagnet
+from lagnet.cli.diagnose import _say_what_differs
 from lagnet.cli.main import main
+from lagnet.diagnosis.diagnose import Diagnosis
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
 from lagnet.rigid_body.random_arm import random_arm, random_arm_urdf
 
 pytestmark = pytest.mark.xdist_group("diagnose_command")  # what they share is made once
@@ -171,3 +176,13 @@ def test_a_damaged_corrected_folder_is_refused(diagnosed, files, tmp_path, capsy
     folder.mkdir()
     (folder / "corrected.json").write_text("{")
     assert "corrected.json" in refuse([files["fit"], "--robot", str(folder)], tmp_path / "out", capsys)
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_links_that_differ_are_told_before_the_causes_that_were_judged_beside_them(capsys, beside: bool) -> None:
+    verdict = SimpleNamespace(warnings=(BESIDE_FREE_LINKS,) if beside else (), found=True)
+    _say_what_differs(cast(Diagnosis, SimpleNamespace(verdict=verdict, effects=(SimpleNamespace(explanation="Dry."),))))
+    told = capsys.readouterr()
+    lines = (told.out + told.err).splitlines()
+    assert lines[-1] == "Dry."
+    assert [line.startswith("Several links differ from the model") for line in lines[:-1]] == [True] * beside

@@ -120,6 +120,19 @@ def command(
     if simulator:
         replayed = replay_held_out(result, simulator, out)
         write_report(result.verdict.to_dict(), evidence, out / "report.html", replayed)
+    _say_what_differs(result)
+    if suggest_motion:
+        _suggest(result, out, seed)
+    say(f"report: {out / 'report.html'}")
+
+
+def _say_what_differs(result: Diagnosis) -> None:
+    """The named physics, a sentence or two each; links that differ, where the causes were judged beside them."""
+    from lagnet.cli.shared.console import say
+    from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
+
+    if BESIDE_FREE_LINKS in result.verdict.warnings:
+        say(f"{BESIDE_FREE_LINKS[0].upper()}{BESIDE_FREE_LINKS[1:]}.")
     for effect in result.effects:
         say(effect.explanation)
     if not result.effects:
@@ -128,9 +141,6 @@ def command(
             if not result.verdict.found
             else "The mismatch found fits no known physics."
         )
-    if suggest_motion:
-        _suggest(result, out, seed)
-    say(f"report: {out / 'report.html'}")
 
 
 def _suggest(result: Diagnosis, out: Path, seed: int) -> None:

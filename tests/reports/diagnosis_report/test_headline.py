@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
 from lagnet.reports.contents.findings import Findings
 from lagnet.reports.held_out_error import error_falls
 from lagnet.reports.sections import headline
@@ -84,6 +85,15 @@ def test_what_an_arm_has_less_of_than_its_model_is_not_told_as_left_out(six) -> 
     assert joints[1] in sentences[0]
     assert joints[0] in sentences[1]
     assert [cause["less"] for cause in headline._causes(findings)] == [True, False]
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_links_that_differ_are_told_before_the_names_that_were_judged_beside_them(six, beside: bool) -> None:
+    findings = findings_of(six)
+    findings.verdict["warnings"] = [BESIDE_FREE_LINKS] if beside else []
+    sentences = headline._sentences(findings)
+    assert (headline.LINKS in sentences) == beside
+    assert sentences[1] == headline.LINKS or sentences[1].startswith("Left out")
 
 
 @pytest.mark.parametrize(("side", "told"), [(0.0, False), (1.0, True)])

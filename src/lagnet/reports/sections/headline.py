@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lagnet.diagnosis.verdict.wording import BESIDE_FREE_LINKS
 from lagnet.effects.catalogue import CATALOGUE
 from lagnet.reports.contents.findings import Findings, place
 from lagnet.reports.held_out_error import error_falls
@@ -11,6 +12,10 @@ from lagnet.reports.page import Section, section
 from lagnet.reports.wording import counted, effect_words, listed, percent, unit_words, with_interval
 
 SHOWN_PARAMETERS = 4  # of one effect in one line; the table of parameters holds all
+LINKS = (
+    "Several of its links differ at once: what these recordings determine of their inertia is identified, "
+    "not attributed to one of them."
+)
 TRIFLE = 1e-4  # of the torque's variance: what the page writes as "< 0.01 %"
 
 
@@ -42,6 +47,7 @@ def _sentences(findings: Findings) -> list[str]:
         return [f"The arm agrees with the model: {which} larger than sensor noise and differentiation explain."]
     where = f"{len(differing)} of {n} joints" if len(differing) < n else "its joint" if n == 1 else f"all {n} joints"
     sentences = [f"The arm differs from the model on {where}."]
+    sentences += [LINKS] if BESIDE_FREE_LINKS in findings.verdict["warnings"] else []
     if not findings.effects:
         sentences += ["No physics of the catalogue explains the difference beyond doubt.", *_unjudged(findings)]
     else:
