@@ -9,6 +9,7 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
 from lagnet.diagnosis.identified.dictionary import GAIN, OF_LOAD, TermGroup, lag_groups, term_groups
+from lagnet.diagnosis.identified.dissipation import driving_friction, with_friction
 from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import INEFFICIENCIES, Choice, choose
@@ -127,7 +128,7 @@ def _fitted(
     late: set[int] = set()
     while True:
         design = make_design(problem, pieces, [*groups, *lag_groups(problem, late)])
-        design, choice = _chosen(problem, pieces, design.without(rotors_of(design, late)))
+        design, choice = _chosen(problem, effects, pieces, design.without(rotors_of(design, late)))
         if choice is None:
             return None
         negative = {t.joint for i, t in columns_of(design, "rotor") if choice.ridge.x[i] < 0}
@@ -138,11 +139,16 @@ def _fitted(
         late |= {rotor} | negative  # where one is no rotor, no negative one is
 
 
-def _chosen(problem: Problem, pieces: Sequence[FitSegment], design: Design) -> tuple[Design, Choice | None]:
+def _chosen(
+    problem: Problem, effects: Sequence[NamedEffect], pieces: Sequence[FitSegment], design: Design
+) -> tuple[Design, Choice | None]:
     """The solution, without friction that no gear has or that is late at reversals; and the equations that it is of."""
     candidates: Sequence[float] = INEFFICIENCIES
+    known = with_friction(problem, effects)
     while (choice := choose(design, candidates)) is not None:
-        spared = np.concatenate([_impossible(design, choice), excessive_bristles(design, choice)])
+        spared = np.concatenate(
+            [_impossible(design, choice), excessive_bristles(design, choice), driving_friction(design, choice, known)]
+        )
         if not spared.size:
             spared = late_bristles(problem, pieces, design, choice)
         if not spared.size:
