@@ -9,10 +9,12 @@ import numpy as np
 
 from lagnet.diagnosis.identified.design import Design, FitSegment, make_design, usual_rest
 from lagnet.diagnosis.identified.dictionary import GAIN, OF_LOAD, TermGroup, lag_groups, term_groups
-from lagnet.diagnosis.identified.dissipation import driving_friction, with_friction
 from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import INEFFICIENCIES, Choice, choose
+from lagnet.diagnosis.identified.friction.dissipation import driving_friction, with_friction
+from lagnet.diagnosis.identified.friction.rest import friction_at_rest
+from lagnet.diagnosis.identified.friction.reversals import excessive_bristles, late_bristles
 from lagnet.diagnosis.identified.real_inertia import (
     columns_of,
     layer_of,
@@ -20,8 +22,6 @@ from lagnet.diagnosis.identified.real_inertia import (
     rotors_of,
     without_negative_rotors,
 )
-from lagnet.diagnosis.identified.rest import friction_at_rest
-from lagnet.diagnosis.identified.reversals import excessive_bristles, late_bristles
 from lagnet.diagnosis.problem.problem import Problem, Segment, spread_evenly
 from lagnet.models.corrected.identified import IdentifiedLayer
 from lagnet.models.corrected.model import CorrectedModel

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lagnet.diagnosis.identified.design import Design, Group, JointRows
-from lagnet.diagnosis.identified.dissipation import DRIVES, driving_friction, with_friction
+from lagnet.diagnosis.identified.friction.dissipation import DRIVES, driving_friction, with_friction
 from lagnet.models.corrected.model import CorrectedModel
 from lagnet.models.corrected.motion_terms import MotionTerm
 from lagnet.models.corrected.named_effects import NamedEffect

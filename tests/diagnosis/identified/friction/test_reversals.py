@@ -12,7 +12,7 @@ from lagnet.diagnosis.identified.design import Design, Group, JointRows
 from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.evidence import fit_ridge
 from lagnet.diagnosis.identified.folds import Choice
-from lagnet.diagnosis.identified.reversals import excessive_bristles
+from lagnet.diagnosis.identified.friction.reversals import excessive_bristles
 from lagnet.diagnosis.problem.dry_friction import fit_sign_model
 from lagnet.diagnosis.problem.problem import pose_problem
 from lagnet.effects.bristle import bristle
