@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -48,6 +49,17 @@ def test_friction_that_gives_work_is_none(weights, gone) -> None:
 
 def test_friction_that_an_offset_cancels_is_none_where_a_joint_turns_one_way() -> None:
     assert driving_friction(*joint((8.0, -56.0, 64.0), spread=0.1), spared=()).tolist() == [DRY]
+
+
+@pytest.mark.parametrize(("bristle", "gone"), [(0.5, [DRY]), (-0.5, [DRY, OFFSET])], ids=["stiff", "less than none"])
+def test_bristles_that_give_back_what_they_took_stay(bristle: float, gone: list[int]) -> None:
+    """A bristle whose work over these samples is negative for a positive stiffness, beside dry friction that drives."""
+    design, _ = joint((0.0, -2.0, bristle))
+    rows, v = design.joints[0], design.joints[0].columns[:, VISCOUS]
+    rows.columns[:, OFFSET] = -np.sign(bristle) * v
+    terms = (*design.terms[:OFFSET], MotionTerm("bristle", 0, 0.01))
+    found: Any = SimpleNamespace(ridge=SimpleNamespace(x=np.array([0.0, -2.0, bristle])))
+    assert driving_friction(replace(design, terms=terms), found, spared=()).tolist() == gone
 
 
 def test_a_joint_is_not_asked_whose_friction_is_modelled_or_named() -> None:

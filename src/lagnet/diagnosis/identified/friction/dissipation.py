@@ -1,7 +1,8 @@
 """W = Σ_t v_t f_t ≥ 0: friction takes work from a joint, or the joint has none.
 
 Where a joint turns one way for most of a few seconds, dry friction and an offset are nearly one column. Their
-difference may then be large and of either sign, and friction that drives the joint predicts no other motion.
+difference may then be large and of either sign, and friction that drives the joint predicts no other motion. Bristles of
+positive stiffness, which give back what they took before, stay.
 """
 
 from __future__ import annotations
@@ -48,5 +49,6 @@ def driving_friction(design: Design, choice: Choice, spared: Collection[int]) ->
         column = int(np.flatnonzero(rows.unknowns == speed)[0])
         work = dict(zip(rows.unknowns.tolist(), sums.gram[column] * choice.ridge.x[rows.unknowns], strict=True))
         if sum(work[i] for i in own) < -DRIVES * np.sqrt(sums.gram[column, column] * sums.power):
-            driving += [i for i in own if work[i] < 0.0]
+            stored = {i for i, t in own.items() if t.kind == "bristle" and choice.ridge.x[i] > 0.0}
+            driving += [i for i in own if work[i] < 0.0 and i not in stored]
     return np.array(driving, dtype=int)
