@@ -1,8 +1,8 @@
 """W = Σ_t v_t f_t ≥ 0: friction takes work from a joint, or the joint has none.
 
 Where a joint turns one way for most of a few seconds, dry friction and an offset are nearly one column. Their
-difference may then be large and of either sign, and friction that drives the joint predicts no other motion. Bristles of
-positive stiffness, which give back what they took before, stay.
+difference may then be large and of either sign, and friction that drives the joint predicts no other motion. Bristles
+of positive stiffness, which give back what they took before, stay.
 """
 
 from __future__ import annotations
