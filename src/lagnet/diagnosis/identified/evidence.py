@@ -151,7 +151,7 @@ def _weights(noise: np.ndarray) -> np.ndarray:
 
 def _factor(gram: np.ndarray, precision: np.ndarray) -> np.ndarray:
     """Lower Cholesky factor of gram + diag α, in the place of gram."""
-    gram[np.diag_indices_from(gram)] += precision + ROUNDING * np.trace(gram) / max(1, len(gram))
+    gram[np.diag_indices_from(gram)] += precision + ROUNDING * np.trace(gram) / len(gram)
     factor, failed = factored(gram, lower=1)
     if failed:
         raise np.linalg.LinAlgError("the normal equations are not positive definite")

@@ -12,7 +12,6 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from lagnet.diagnosis.identified.design import Design
-from lagnet.diagnosis.identified.equations import joint_equations
 from lagnet.diagnosis.identified.folds import Choice
 from lagnet.diagnosis.problem.problem import Problem
 from lagnet.effects.catalogue import effect_named
@@ -41,14 +40,15 @@ def driving_friction(design: Design, choice: Choice, spared: Collection[int]) ->
         spared: joints that are not asked, since the layer does not have all of their friction.
     """
     driving = []
-    for j, (rows, sums) in enumerate(zip(design.joints, joint_equations(design), strict=True)):
+    for j, rows in enumerate(design.joints):
         own = {i: t for i, t in enumerate(design.terms, design.n_bodies) if t.joint == j and t.kind in FRICTION}
         speed = next((i for i, t in own.items() if t.kind == "viscous"), None)
         if speed is None or j in spared:
             continue
-        column = int(np.flatnonzero(rows.unknowns == speed)[0])
-        work = dict(zip(rows.unknowns.tolist(), sums.gram[column] * choice.ridge.x[rows.unknowns], strict=True))
-        if sum(work[i] for i in own) < -DRIVES * np.sqrt(sums.gram[column, column] * sums.power):
+        columns, target = rows.columns[rows.valid], rows.target[rows.valid]
+        v = columns[:, rows.unknowns == speed][:, 0]
+        work = dict(zip(rows.unknowns.tolist(), (v @ columns) * choice.ridge.x[rows.unknowns], strict=True))
+        if sum(work[i] for i in own) < -DRIVES * np.linalg.norm(v) * np.linalg.norm(target):
             stored = {i for i, t in own.items() if t.kind == "bristle" and choice.ridge.x[i] > 0.0}
             driving += [i for i in own if work[i] < 0.0 and i not in stored]
     return np.array(driving, dtype=int)
